@@ -1,0 +1,24 @@
+/// First measures of accuracy, in double, from nothing but definitions and motions, so that they
+/// judge every engine alike (physics page: A1, A3, A4; A5 and A7 have their own scenes).
+#pragma once
+
+#include <span>
+
+#include "core/scene/scene.h"
+#include "core/state/records.h"
+
+namespace huestep {
+
+struct Measures {
+    double energy = 0.0;           ///< J: Σ m v²/2 + I ω²/2 − m g·x, of dynamic bodies
+    double maxPenetration = 0.0;   ///< m, from a fresh narrow phase in double; 0: none
+    double meanPenetration = 0.0;  ///< m, over the overlapping pairs
+    double maxJointError = 0.0;    ///< m, largest |pA − pB| of revolutes, or length outside range
+};
+
+/// `bodies`, `shapes`, `joints` and `motions` as `World` shows them: sorted by id, places matching.
+Measures measure(const WorldInfo& world, std::span<const BodyInfo> bodies,
+                 std::span<const ShapeInfo> shapes, std::span<const JointInfo> joints,
+                 std::span<const BodyMotion> motions);
+
+}  // namespace huestep

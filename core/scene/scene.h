@@ -1,0 +1,204 @@
+/// Scenes as values: everything a world starts from, and what may be spawned into one.
+///
+/// A scene is plain data. It has no behaviour, owns no resource and may be copied, compared,
+/// written to a file (`protocol/scene_file.h`) and sent over the wire. `check(scene)` says whether
+/// a world can be built from it; a `World` is built only from a checked scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "core/result.h"
+
+namespace huestep {
+
+using BodyId = std::uint32_t;   ///< from a counter that is state; never reused; 0 is no body
+using ShapeId = std::uint32_t;  ///< likewise; 0 is no shape
+using JointId = std::uint32_t;  ///< likewise; 0 is no joint
+using PlayerId = std::uint32_t;  ///< author of commands; 0 is the host
+
+inline constexpr int maxPolygonVertices = 8;
+
+/// Surface properties of a shape. Two shapes in touch mix friction by the geometric mean,
+/// restitution and rolling resistance by the maximum, and add tangent speeds.
+struct Material {
+    float friction = 0.6f;           ///< Coulomb's μ, [0, 100]
+    float restitution = 0.0f;        ///< Newton's e, [0, 1]; applies above 1 m/s of approach
+    float rollingResistance = 0.0f;  ///< rolling moment / (normal force · radius), [0, 100]
+    float tangentSpeed = 0.0f;       ///< m/s, speed of a conveyor belt's surface, ±10,000
+    friend bool operator==(const Material&, const Material&) = default;
+};
+
+/// Which shapes may touch. Shapes of one group ≠ 0 always touch (group > 0) or never (group < 0);
+/// others touch if each one's category is in the other's mask.
+struct Filter {
+    std::uint32_t category = 1;
+    std::uint32_t mask = 0xffffffffu;
+    std::int32_t group = 0;
+    friend bool operator==(const Filter&, const Filter&) = default;
+};
+
+/// Whether two shapes of different bodies may touch at all.
+constexpr bool mayTouch(const Filter& a, const Filter& b) {
+    if (a.group == b.group && a.group != 0) return a.group > 0;
+    return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
+
+enum class ShapeKind : std::uint8_t { Circle, Capsule, Polygon, Segment };
+
+/// A convex shape in the frame of its body's origin: the set of points within `radius` of the
+/// convex hull of `vertices`. Circle: 1 vertex. Capsule and segment: 2. Polygon: 3 to 8, convex,
+/// counter-clockwise. A segment has radius 0 and no mass.
+struct ShapeDef {
+    ShapeKind kind = ShapeKind::Circle;
+    std::uint8_t vertexCount = 1;
+    std::array<Vec2, maxPolygonVertices> vertices{};  ///< m
+    float radius = 0.5f;                              ///< m, [0, 10,000]
+    float density = 1.0f;                             ///< kg/m², [0, 1e6]
+    Material material;
+    Filter filter;
+
+    static ShapeDef circle(Vec2 center, float radius);
+    static ShapeDef capsule(Vec2 a, Vec2 b, float radius);
+    static ShapeDef segment(Vec2 a, Vec2 b);
+    /// A box of half width `hx` and half height `hy`, turned by `q` about `center`.
+    static ShapeDef box(float hx, float hy, Vec2 center = {}, Rotation q = {}, float radius = 0.0f);
+    /// Takes the points as they are; `check` refuses what is not convex or counter-clockwise.
+    static ShapeDef polygon(std::span<const Vec2> points, float radius = 0.0f);
+
+    friend bool operator==(const ShapeDef&, const ShapeDef&) = default;
+};
+
+enum class BodyType : std::uint8_t {
+    Static,     ///< never moves
+    Kinematic,  ///< moves with its velocity, pushed by nothing
+    Dynamic
+};
+
+struct BodyDef {
+    BodyId id = 0;  ///< 0: the next free one, in the order of the scene; not allowed in a spawn
+    BodyType type = BodyType::Static;
+    bool fixedRotation = false;
+    bool maySleep = true;
+    bool asleep = false;  ///< starts asleep; for dynamic bodies
+    Vec2 position;        ///< m, of the body's origin
+    Rotation rotation;    ///< unit vector (cos θ, sin θ)
+    Vec2 velocity;        ///< m/s, of the centre of mass
+    float angularVelocity = 0.0f;  ///< rad/s
+    float linearDamping = 0.0f;    ///< 1/s, [0, 1000]
+    float angularDamping = 0.0f;   ///< 1/s, [0, 1000]
+    float gravityScale = 1.0f;     ///< ±1000
+    std::vector<ShapeDef> shapes;
+    friend bool operator==(const BodyDef&, const BodyDef&) = default;
+};
+
+enum class JointKind : std::uint8_t {
+    Revolute,  ///< two bodies share a point
+    Distance,  ///< two points keep a distance, or a range of it
+    Mouse      ///< a point of body B is drawn to `target` with a bounded force
+};
+
+/// A soft part: a damped harmonic oscillator of the row's effective mass.
+struct SpringDef {
+    bool enabled = false;
+    float hertz = 0.0f;         ///< Hz, [0, 1000]
+    float dampingRatio = 0.0f;  ///< 1 is critical, [0, 1000]
+    friend bool operator==(const SpringDef&, const SpringDef&) = default;
+};
+
+/// Bounds of the joint's coordinate: rad for a revolute joint within (−π, π), m for a distance.
+struct LimitDef {
+    bool enabled = false;
+    float lower = 0.0f;
+    float upper = 0.0f;
+    friend bool operator==(const LimitDef&, const LimitDef&) = default;
+};
+
+/// Drives the joint's coordinate at `speed` with at most `maxEffort`.
+struct MotorDef {
+    bool enabled = false;
+    float speed = 0.0f;      ///< rad/s or m/s, ±100,000
+    float maxEffort = 0.0f;  ///< N·m or N, [0, 1e12]
+    friend bool operator==(const MotorDef&, const MotorDef&) = default;
+};
+
+/// A joint between two bodies of the same list (a scene's, or a spawn's), given by their places.
+struct JointDef {
+    JointId id = 0;  ///< as BodyDef::id
+    JointKind kind = JointKind::Revolute;
+    bool collideConnected = false;  ///< whether shapes of the two bodies may touch
+    std::uint32_t bodyA = 0;        ///< place in `bodies`
+    std::uint32_t bodyB = 0;
+    Vec2 anchorA;                  ///< m, in the frame of body A's origin
+    Vec2 anchorB;                  ///< m, in the frame of body B's origin
+    Rotation reference;            ///< revolute: rotation of B relative to A at coordinate 0
+    float length = 1.0f;           ///< distance: rest length, m, (0, 1e5]
+    Vec2 target;                   ///< mouse: m, in the world
+    float maxForce = 0.0f;         ///< mouse: N, [0, 1e12]
+    SpringDef spring;              ///< revolute: to coordinate 0; distance: to `length`; mouse
+    LimitDef limit;
+    MotorDef motor;
+    friend bool operator==(const JointDef&, const JointDef&) = default;
+};
+
+/// What players get when they join a session, and what they may do there.
+struct PlayerDef {
+    std::optional<BodyDef> body;    ///< spawned for each player at the next spawn point
+    std::vector<Vec2> spawnPoints;  ///< m; player k gets point k mod size
+    std::uint32_t maxSpawned = 16;  ///< bodies a player may have spawned at a time, [0, 1024]
+    float maxImpulse = 100.0f;      ///< N·s a command, [0, 1e9]
+    float maxForce = 1000.0f;       ///< N a command or a grab, [0, 1e9]
+    friend bool operator==(const PlayerDef&, const PlayerDef&) = default;
+};
+
+/// Caps of a world. A command that would pass one is rejected, the same on every replica.
+struct WorldLimits {
+    std::uint32_t bodies = 100'000;
+    std::uint32_t shapes = 200'000;
+    std::uint32_t joints = 100'000;
+    std::uint32_t commandsPerTick = 1'024;
+    std::uint32_t players = 1'024;
+    friend bool operator==(const WorldLimits&, const WorldLimits&) = default;
+};
+
+/// Where the id counters of a new world start: the next body, shape and joint get at least these.
+struct Counters {
+    std::uint32_t nextBody = 1;
+    std::uint32_t nextShape = 1;
+    std::uint32_t nextJoint = 1;
+    friend bool operator==(const Counters&, const Counters&) = default;
+};
+
+struct Scene {
+    std::string name;                   ///< for people; no part of a world's state
+    Vec2 gravity{0.0f, -10.0f};         ///< m/s²
+    float stepSeconds = 1.0f / 60.0f;   ///< s, length of one tick, (0, 0.1]
+    std::uint32_t substeps = 4;         ///< of a tick, [1, 64]
+    bool sleep = true;                  ///< whether islands at rest fall asleep
+    std::vector<BodyDef> bodies;
+    std::vector<JointDef> joints;
+    std::optional<PlayerDef> players;   ///< without it, players may only watch
+    WorldLimits limits;
+    Counters counters;
+    friend bool operator==(const Scene&, const Scene&) = default;
+};
+
+/// Hard limits of any scene, whatever it says of itself.
+inline constexpr std::uint32_t maxShapesPerBody = 256;
+inline constexpr float maxCoordinate = 1.0e6f;  ///< m, of positions
+inline constexpr float maxSpeed = 1.0e5f;       ///< m/s and rad/s, of definitions
+
+/// Says whether a world can be built from the scene; the sentence names the first thing that is
+/// wrong by its path, as in `bodies[3].shapes[0].vertices[2].x: not a finite number`.
+Status check(const Scene& scene);
+
+/// The same for a body or a joint alone, with `path` in front of each sentence.
+Status check(const BodyDef& body, const std::string& path);
+Status check(const JointDef& joint, std::size_t bodyCount, const std::string& path);
+
+}  // namespace huestep

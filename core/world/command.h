@@ -1,0 +1,139 @@
+/// Commands: the only way to change a world (law 1, "one door").
+///
+/// The journal, the wire frame, the replay file, a test and a bug report hold the same commands.
+/// A command is checked against the state and its author's rights, then applied or rejected; both
+/// are functions of (state, commands) alone, so every replica says the same.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace huestep {
+
+/// A player enters: gets a record and, where the scene gives players a body, a body. Host only.
+struct AddPlayer {
+    PlayerId player = 0;
+    friend bool operator==(const AddPlayer&, const AddPlayer&) = default;
+};
+
+/// A player leaves: its grab is released, its bodies are removed. Host only.
+struct RemovePlayer {
+    PlayerId player = 0;
+    friend bool operator==(const RemovePlayer&, const RemovePlayer&) = default;
+};
+
+/// An impulse at a point of the world. Wakes the body.
+struct ApplyImpulse {
+    BodyId body = 0;
+    Vec2 impulse;  ///< N·s
+    Vec2 point;    ///< m, in the world
+    friend bool operator==(const ApplyImpulse&, const ApplyImpulse&) = default;
+};
+
+/// A force at a point of the world, for this tick. Wakes the body.
+struct ApplyForce {
+    BodyId body = 0;
+    Vec2 force;  ///< N
+    Vec2 point;  ///< m, in the world
+    friend bool operator==(const ApplyForce&, const ApplyForce&) = default;
+};
+
+/// Takes hold of a body at a point and draws that point to `target`. One grab a player: a second
+/// `Grab` of the same body moves the target, of another body lets the first go.
+struct Grab {
+    BodyId body = 0;
+    Vec2 point;   ///< m, in the world, where the body is taken
+    Vec2 target;  ///< m, in the world
+    friend bool operator==(const Grab&, const Grab&) = default;
+};
+
+/// Moves the target of the author's grab.
+struct MoveGrab {
+    Vec2 target;  ///< m, in the world
+    friend bool operator==(const MoveGrab&, const MoveGrab&) = default;
+};
+
+/// Lets go of what the author grabbed.
+struct Release {
+    friend bool operator==(const Release&, const Release&) = default;
+};
+
+/// Adds bodies and joints between them; they get the next ids in order. A player's bodies count
+/// against its budget and belong to it; players spawn at most 8 bodies a command, and no joint.
+struct Spawn {
+    std::vector<BodyDef> bodies;
+    std::vector<JointDef> joints;
+    friend bool operator==(const Spawn&, const Spawn&) = default;
+};
+
+/// Removes a body with its shapes, contacts and joints. A player removes only what it spawned.
+struct RemoveBody {
+    BodyId body = 0;
+    friend bool operator==(const RemoveBody&, const RemoveBody&) = default;
+};
+
+struct RemoveJoint {  ///< Host only.
+    JointId joint = 0;
+    friend bool operator==(const RemoveJoint&, const RemoveJoint&) = default;
+};
+
+/// Sets the speed of a motor that the scene enabled, and whether it runs.
+struct SetMotor {
+    JointId joint = 0;
+    bool enabled = true;
+    float speed = 0.0f;  ///< rad/s or m/s
+    friend bool operator==(const SetMotor&, const SetMotor&) = default;
+};
+
+/// Sets the velocity of a kinematic body. Host only.
+struct SetVelocity {
+    BodyId body = 0;
+    Vec2 velocity;                 ///< m/s
+    float angularVelocity = 0.0f;  ///< rad/s
+    friend bool operator==(const SetVelocity&, const SetVelocity&) = default;
+};
+
+using Action = std::variant<AddPlayer, RemovePlayer, ApplyImpulse, ApplyForce, Grab, MoveGrab,
+                            Release, Spawn, RemoveBody, RemoveJoint, SetMotor, SetVelocity>;
+
+/// One action of one author. `sequence` counts the author's commands from 1; a world remembers
+/// the last one applied or rejected per author as state and rejects what is not above it, so a
+/// command counts once however often it is sent.
+struct Command {
+    PlayerId author = 0;
+    std::uint64_t sequence = 0;
+    Action action;
+    friend bool operator==(const Command&, const Command&) = default;
+};
+
+/// Why a command was rejected. The numbers are part of the protocol: grow only at the end.
+enum class Rejection : std::uint16_t {
+    None = 0,
+    UnknownAuthor,     ///< the author is no player of this world
+    NotAllowed,        ///< only the host, or only the owner, may do this
+    OldSequence,       ///< at or below the author's last sequence
+    UnknownBody,
+    UnknownJoint,
+    WrongBodyType,     ///< such as an impulse on a static body
+    NotFinite,         ///< a number is not finite or out of range
+    TooStrong,         ///< an impulse or force above the scene's cap
+    BadDefinition,     ///< a spawned body or joint that `check` refuses
+    OverBudget,        ///< the author's spawn budget is used up
+    OverLimit,         ///< a cap of the world is reached
+    NothingGrabbed,
+    NoMotor,           ///< the joint has no motor that the scene enabled
+    PlayerExists,
+};
+
+/// The reason in words, for a person.
+std::string_view describe(Rejection reason);
+
+/// Orders commands by (author, sequence), the key order in which a step applies them.
+void sortByKey(std::vector<Command>& commands);
+
+}  // namespace huestep

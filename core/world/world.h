@@ -1,0 +1,165 @@
+/// The world: bodies, shapes, joints and contacts that step in lockstep.
+///
+/// A world changes only through `step(commands)`. Its future is a function of its state and the
+/// commands: not of thread count, SIMD width, memory, history or time. Thread rule: one thread may
+/// step a world while no other reads it; several may read.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel/executor.h"
+#include "core/result.h"
+#include "core/scene/scene.h"
+#include "core/state/records.h"
+#include "core/world/command.h"
+#include "core/world/event.h"
+
+namespace huestep {
+
+/// Lanes of the solver's arithmetic. The result is the same for all.
+enum class Simd : std::uint8_t { Auto, Scalar, Sse2, Avx2, Avx512, Neon };
+
+/// The widths this machine can run, narrowest first; always has Scalar.
+std::vector<Simd> availableSimd();
+std::string_view nameOf(Simd simd);
+/// From `auto`, `scalar`, `sse2`, `avx2`, `avx512`, `neon`.
+std::optional<Simd> simdFromName(std::string_view name);
+
+/// With what a step is computed. No part of it can reach the result.
+struct StepResources {
+    Executor* executor = nullptr;  ///< none: the caller's thread alone
+    Simd simd = Simd::Auto;
+    Clock clock = nullptr;  ///< none: `StepReport` has no times
+};
+
+/// The stages of a step, in order, as measured by `StepReport::nanoseconds`.
+enum class Stage : std::uint8_t {
+    Commands, Pairs, Collide, Islands, Colour, Prepare, Solve, Store, Finish, Sleep, Count
+};
+std::string_view nameOf(Stage stage);
+
+/// What the last step did: for people and charts, never state.
+struct StepReport {
+    std::uint32_t awakeBodies = 0;
+    std::uint32_t pairs = 0;        ///< pairs of shapes whose bounds overlap
+    std::uint32_t contacts = 0;     ///< touching
+    std::uint32_t recycled = 0;     ///< contacts whose manifold was kept
+    std::uint32_t joints = 0;       ///< awake
+    std::uint32_t islands = 0;      ///< awake, with at least one constraint
+    std::uint32_t batches = 0;      ///< islands packed for one thread, or one giant island
+    std::uint32_t colours = 0;      ///< most in any batch
+    std::uint32_t overflow = 0;     ///< constraints beyond the last colour
+    std::array<std::uint64_t, static_cast<std::size_t>(Stage::Count)> nanoseconds{};
+};
+
+/// A touching contact as a person or a renderer wants it.
+struct ContactView {
+    ShapeId shapeA = 0;
+    ShapeId shapeB = 0;
+    Vec2 normal;                          ///< world, from A to B
+    int pointCount = 0;                   ///< 1 or 2
+    std::array<Vec2, 2> point;            ///< m, world, midway between the surfaces
+    std::array<float, 2> separation{};    ///< m, < 0: overlap
+    std::array<float, 2> normalImpulse{};  ///< N·s of the last substep
+    int colour = -1;  ///< graph colour in the last step; −1: asleep; 255: overflow
+};
+
+/// The first field in which two worlds differ, in the order of the state.
+struct Difference {
+    std::string record;  ///< "body", "contact", "joint", "world", …
+    std::string name;    ///< which one: "body 17", "contact 3-9"
+    std::string field;   ///< "velocity.x"
+    std::string left;    ///< the values, as text that reads back exactly
+    std::string right;
+    BodyId body = 0;     ///< the body it belongs to, or 0
+
+    /// "body 17 velocity.x: 1.25 here, 1.5 there"
+    [[nodiscard]] std::string sentence() const;
+};
+
+/// A hit of a ray: fraction of the ray, point and normal on the shape.
+struct RayHit {
+    ShapeId shape = 0;
+    BodyId body = 0;
+    float fraction = 0.0f;  ///< [0, 1]
+    Vec2 point;
+    Vec2 normal;
+};
+
+class World {
+   public:
+    /// Builds the world of a scene; fails with the sentence of `check(scene)`.
+    static Result<World> create(const Scene& scene);
+
+    /// The same state from a snapshot. Every byte is checked: a sentence names what and where.
+    static Result<World> restore(std::span<const std::byte> snapshot);
+
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+    World(const World&);
+    World& operator=(const World&);
+    ~World();
+
+    /// The one door: applies commands in key order and takes one step. Never fails: what cannot be
+    /// applied is rejected in `Events::commands`. The events live until the next step.
+    const Events& step(std::span<const Command> commands, const StepResources& with = {});
+
+    /// An exact image of the state; see `core/state/snapshot.h` for its layout.
+    [[nodiscard]] std::vector<std::byte> save() const;
+
+    [[nodiscard]] std::uint64_t tick() const;
+    /// XXH3-64 over pose and velocity of every body, tick and counts.
+    [[nodiscard]] std::uint64_t motionRoot() const;
+    /// XXH3-64 over every state field.
+    [[nodiscard]] std::uint64_t fullRoot() const;
+    /// The hashes of the blocks of 64 bodies that `motionRoot` is made of, in order.
+    [[nodiscard]] std::vector<std::uint64_t> motionLeaves() const;
+
+    // Views of the state, sorted by id, valid until the next step.
+    [[nodiscard]] const WorldInfo& info() const;
+    [[nodiscard]] std::span<const BodyInfo> bodies() const;
+    [[nodiscard]] std::span<const BodyMotion> motions() const;  ///< place i: body i
+    [[nodiscard]] std::span<const ShapeInfo> shapes() const;
+    [[nodiscard]] std::span<const JointInfo> joints() const;
+    [[nodiscard]] std::span<const JointImpulses> jointImpulses() const;  ///< place i: joint i
+    [[nodiscard]] std::span<const PlayerRecord> players() const;
+    [[nodiscard]] std::vector<ContactState> contacts() const;
+    [[nodiscard]] std::vector<ContactView> contactViews() const;
+
+    /// Place of a body in `bodies()`, if it is there.
+    [[nodiscard]] std::optional<std::uint32_t> find(BodyId id) const;
+    /// Places of a body's shapes in `shapes()`: a contiguous run.
+    [[nodiscard]] std::span<const ShapeInfo> shapesOf(BodyId id) const;
+
+    [[nodiscard]] const Events& events() const;
+    [[nodiscard]] const StepReport& report() const;
+
+    /// All shapes the ray from `from` to `to` meets, ordered by (fraction, shape id).
+    [[nodiscard]] std::vector<RayHit> castRay(Vec2 from, Vec2 to) const;
+    /// All shapes that overlap the shape at the pose, by id.
+    [[nodiscard]] std::vector<ShapeId> overlap(const ShapeDef& shape, const Pose& pose) const;
+
+    /// Forgets everything that is not state. Only speed changes: a test calls it at random ticks.
+    void dropAccelerators();
+
+    /// Flips one bit of one state field of a body: a hook for tests of desync reports.
+    void corruptForTest(BodyId body, std::uint32_t fieldIndex, std::uint32_t bit);
+
+   private:
+    struct Data;
+    explicit World(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> m_data;
+    friend std::optional<Difference> firstDifference(const World&, const World&);
+};
+
+/// Where two worlds differ first: the world's own fields, then players, bodies, shapes, joints and
+/// contacts by id. None: their states are equal.
+std::optional<Difference> firstDifference(const World& left, const World& right);
+
+}  // namespace huestep
