@@ -17,9 +17,9 @@
 
 namespace huestep {
 
-using BodyId = std::uint32_t;   ///< from a counter that is state; never reused; 0 is no body
-using ShapeId = std::uint32_t;  ///< likewise; 0 is no shape
-using JointId = std::uint32_t;  ///< likewise; 0 is no joint
+using BodyId = std::uint32_t;    ///< from a counter that is state; never reused; 0 is no body
+using ShapeId = std::uint32_t;   ///< likewise; 0 is no shape
+using JointId = std::uint32_t;   ///< likewise; 0 is no joint
 using PlayerId = std::uint32_t;  ///< author of commands; 0 is the host
 
 inline constexpr int maxPolygonVertices = 8;
@@ -52,14 +52,16 @@ constexpr bool mayTouch(const Filter& a, const Filter& b) {
 enum class ShapeKind : std::uint8_t { Circle, Capsule, Polygon, Segment };
 
 /// A convex shape in the frame of its body's origin: the set of points within `radius` of the
-/// convex hull of `vertices`. Circle: 1 vertex. Capsule and segment: 2. Polygon: 3 to 8, convex,
-/// counter-clockwise. A segment has radius 0 and no mass.
+/// convex hull of `vertices`. Circle: 1 vertex. Capsule and segment: 2, at least `caps::minEdge`
+/// apart. Polygon: 3 to 8, convex, counter-clockwise, edges of at least `caps::minEdge`, every
+/// vertex at least `caps::minVertexDepth` inside of every edge that it does not end (so none is
+/// collinear). A segment has radius 0 and no mass. Vertices beyond `vertexCount` mean nothing.
 struct ShapeDef {
     ShapeKind kind = ShapeKind::Circle;
     std::uint8_t vertexCount = 1;
-    std::array<Vec2, maxPolygonVertices> vertices{};  ///< m
-    float radius = 0.5f;                              ///< m, [0, 10,000]
-    float density = 1.0f;                             ///< kg/m², [0, 1e6]
+    std::array<Vec2, maxPolygonVertices> vertices{};  ///< m, ±10,000
+    float radius = 0.5f;   ///< m, [0, 10,000]; circles and capsules: at least `caps::minEdge`
+    float density = 1.0f;  ///< kg/m², 0 or [1e-6, 1e6]
     Material material;
     Filter filter;
 
@@ -80,15 +82,18 @@ enum class BodyType : std::uint8_t {
     Dynamic
 };
 
+/// A dynamic body needs a shape with area and density: none is given a mass that its scene does
+/// not say. Static and kinematic bodies may have no shape, to anchor joints.
 struct BodyDef {
-    BodyId id = 0;  ///< 0: the next free one, in the order of the scene; not allowed in a spawn
+    /// 0: given by the order of the scene, see `bodyIdsOf`. A spawn allows 0 alone.
+    BodyId id = 0;
     BodyType type = BodyType::Static;
     bool fixedRotation = false;
     bool maySleep = true;
-    bool asleep = false;  ///< starts asleep; for dynamic bodies
+    bool asleep = false;  ///< starts asleep; dynamic bodies without velocity that may sleep
     Vec2 position;        ///< m, of the body's origin
-    Rotation rotation;    ///< unit vector (cos θ, sin θ)
-    Vec2 velocity;        ///< m/s, of the centre of mass
+    Rotation rotation;    ///< (cos θ, sin θ), c² + s² within `caps::rotationTolerance` of 1
+    Vec2 velocity;        ///< m/s, of the centre of mass; zero if static
     float angularVelocity = 0.0f;  ///< rad/s
     float linearDamping = 0.0f;    ///< 1/s, [0, 1000]
     float angularDamping = 0.0f;   ///< 1/s, [0, 1000]
@@ -128,19 +133,21 @@ struct MotorDef {
 };
 
 /// A joint between two bodies of the same list (a scene's, or a spawn's), given by their places.
+/// Two bodies that nothing can push may be joined; the joint then does nothing. A mouse joint has
+/// neither limit nor motor, and its body A means nothing (it may be body B).
 struct JointDef {
     JointId id = 0;  ///< as BodyDef::id
     JointKind kind = JointKind::Revolute;
     bool collideConnected = false;  ///< whether shapes of the two bodies may touch
     std::uint32_t bodyA = 0;        ///< place in `bodies`
     std::uint32_t bodyB = 0;
-    Vec2 anchorA;                  ///< m, in the frame of body A's origin
-    Vec2 anchorB;                  ///< m, in the frame of body B's origin
-    Rotation reference;            ///< revolute: rotation of B relative to A at coordinate 0
-    float length = 1.0f;           ///< distance: rest length, m, (0, 1e5]
-    Vec2 target;                   ///< mouse: m, in the world
-    float maxForce = 0.0f;         ///< mouse: N, [0, 1e12]
-    SpringDef spring;              ///< revolute: to coordinate 0; distance: to `length`; mouse
+    Vec2 anchorA;           ///< m, in the frame of body A's origin
+    Vec2 anchorB;           ///< m, in the frame of body B's origin
+    Rotation reference;     ///< revolute: rotation of B relative to A at coordinate 0
+    float length = 1.0f;    ///< distance: rest length, m, [0.001, 1e5]
+    Vec2 target;            ///< mouse: m, in the world
+    float maxForce = 0.0f;  ///< mouse: N, [0, 1e12]
+    SpringDef spring;       ///< revolute: to coordinate 0; distance: to `length`; mouse
     LimitDef limit;
     MotorDef motor;
     friend bool operator==(const JointDef&, const JointDef&) = default;
@@ -148,8 +155,8 @@ struct JointDef {
 
 /// What players get when they join a session, and what they may do there.
 struct PlayerDef {
-    std::optional<BodyDef> body;    ///< spawned for each player at the next spawn point
-    std::vector<Vec2> spawnPoints;  ///< m; player k gets point k mod size
+    std::optional<BodyDef> body;    ///< spawned for each player at the next spawn point; id 0
+    std::vector<Vec2> spawnPoints;  ///< m; player k gets point k mod size; at least one if `body`
     std::uint32_t maxSpawned = 16;  ///< bodies a player may have spawned at a time, [0, 1024]
     float maxImpulse = 100.0f;      ///< N·s a command, [0, 1e9]
     float maxForce = 1000.0f;       ///< N a command or a grab, [0, 1e9]
@@ -175,14 +182,14 @@ struct Counters {
 };
 
 struct Scene {
-    std::string name;                   ///< for people; no part of a world's state
-    Vec2 gravity{0.0f, -10.0f};         ///< m/s²
-    float stepSeconds = 1.0f / 60.0f;   ///< s, length of one tick, (0, 0.1]
-    std::uint32_t substeps = 4;         ///< of a tick, [1, 64]
-    bool sleep = true;                  ///< whether islands at rest fall asleep
+    std::string name;                  ///< for people, ≤ 256 bytes; no part of a world's state
+    Vec2 gravity{0.0f, -10.0f};        ///< m/s², ±10,000
+    float stepSeconds = 1.0f / 60.0f;  ///< s, length of one tick, [0.0001, 0.1]
+    std::uint32_t substeps = 4;        ///< of a tick, [1, 64]
+    bool sleep = true;                 ///< whether islands at rest fall asleep
     std::vector<BodyDef> bodies;
     std::vector<JointDef> joints;
-    std::optional<PlayerDef> players;   ///< without it, players may only watch
+    std::optional<PlayerDef> players;  ///< without it, players may only watch
     WorldLimits limits;
     Counters counters;
     friend bool operator==(const Scene&, const Scene&) = default;
@@ -192,6 +199,31 @@ struct Scene {
 inline constexpr std::uint32_t maxShapesPerBody = 256;
 inline constexpr float maxCoordinate = 1.0e6f;  ///< m, of positions
 inline constexpr float maxSpeed = 1.0e5f;       ///< m/s and rad/s, of definitions
+
+namespace caps {
+inline constexpr float maxExtent = 1.0e4f;        ///< m, of vertices and radii
+inline constexpr float minEdge = 1.0e-3f;         ///< m, of edges, of radii of circles and capsules
+inline constexpr float minVertexDepth = 1.0e-4f;  ///< m, from a vertex to any edge not its own
+inline constexpr float minDensity = 1.0e-6f;      ///< kg/m², unless 0
+inline constexpr float maxDensity = 1.0e6f;       ///< kg/m²
+inline constexpr float minJointLength = 1.0e-3f;  ///< m
+inline constexpr float maxJointLength = 1.0e5f;   ///< m
+inline constexpr float maxEffort = 1.0e12f;       ///< N and N·m
+inline constexpr float maxGravity = 1.0e4f;       ///< m/s²
+inline constexpr float minStepSeconds = 1.0e-4f;  ///< s
+inline constexpr float rotationTolerance = 1.0e-3f;  ///< of c² + s²; the world normalises
+inline constexpr std::uint32_t maxId = 0x7fffffffu;  ///< of definitions and counters at the start
+inline constexpr std::uint32_t maxBodies = 1'000'000;
+inline constexpr std::uint32_t maxShapes = 2'000'000;
+inline constexpr std::uint32_t maxJoints = 1'000'000;
+inline constexpr std::size_t maxSpawnPoints = 4096;
+inline constexpr std::size_t maxSceneName = 256;  ///< bytes
+}  // namespace caps
+
+/// The ids that bodies and joints get, place by place: those given stand; the others are counted
+/// up in the order of the scene, from the counter or past the largest id given, whatever is more.
+std::vector<BodyId> bodyIdsOf(const Scene& scene);
+std::vector<JointId> jointIdsOf(const Scene& scene);
 
 /// Says whether a world can be built from the scene; the sentence names the first thing that is
 /// wrong by its path, as in `bodies[3].shapes[0].vertices[2].x: not a finite number`.
