@@ -1,0 +1,57 @@
+/// A shape as the narrow phase sees it: a rounded convex hull in the frame of its body's centre.
+#pragma once
+
+#include <array>
+
+#include "core/math/vec.h"
+#include "core/state/records.h"
+
+namespace huestep {
+
+/// Points within `radius` of the convex hull of `count` vertices (1 to 8, counter-clockwise).
+/// `normals[i]` is the outward normal of the edge from vertex i to vertex i+1; a hull of two
+/// vertices has two edges with opposite normals, a hull of one has none.
+template <class Real>
+struct HullT {
+    int count = 0;
+    Real radius{0};
+    std::array<Vec2T<Real>, maxPolygonVertices> vertices{};
+    std::array<Vec2T<Real>, maxPolygonVertices> normals{};
+
+    [[nodiscard]] int next(int i) const { return i + 1 < count ? i + 1 : 0; }
+};
+
+using Hull = HullT<float>;
+
+template <class Real>
+HullT<Real> hullOf(const ShapeInfo& shape) {
+    HullT<Real> hull;
+    hull.count = shape.vertexCount();
+    hull.radius = static_cast<Real>(shape.radius);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(hull.count); ++i) {
+        hull.vertices[i] = {static_cast<Real>(shape.vertices[i].x),
+                            static_cast<Real>(shape.vertices[i].y)};
+    }
+    if (hull.count < 2) return hull;
+    for (int i = 0; i < hull.count; ++i) {
+        const auto edge = hull.vertices[static_cast<std::size_t>(hull.next(i))] -
+                          hull.vertices[static_cast<std::size_t>(i)];
+        hull.normals[static_cast<std::size_t>(i)] = normalized(perpRight(edge));
+    }
+    return hull;
+}
+
+/// The tight box around the hull at the pose.
+template <class Real>
+BoundsT<Real> boundsOf(const HullT<Real>& hull, const PoseT<Real>& pose) {
+    Vec2T<Real> low = transform(pose, hull.vertices[0]);
+    Vec2T<Real> high = low;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(hull.count); ++i) {
+        const Vec2T<Real> v = transform(pose, hull.vertices[i]);
+        low = minOf(low, v);
+        high = maxOf(high, v);
+    }
+    return grown(BoundsT<Real>{low, high}, hull.radius);
+}
+
+}  // namespace huestep

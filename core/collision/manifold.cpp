@@ -1,0 +1,283 @@
+#include "core/collision/manifold.h"
+
+namespace huestep {
+
+namespace {
+
+// Cores nearer than this are treated as touching faces: the direction between two points that
+// nearly coincide is noise. A tenth of the 5 mm that the field calls the linear slop.
+constexpr double featureTolerance = 0.0005;
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr std::uint16_t featureOf(int vertexA, int vertexB) {
+    return static_cast<std::uint16_t>((vertexA << 8) | vertexB);
+}
+
+/// Surfaces at `coreB − normal·rB` and `coreA + normal·rA`; the contact point lies between them.
+template <class Real>
+void addPoint(ManifoldT<Real>& m, Vec2T<Real> coreA, Vec2T<Real> coreB, Real separation,
+              Real radiusA, Real radiusB, int vertexA, int vertexB) {
+    ManifoldPointT<Real>& p = m.points[m.count++];
+    const Vec2T<Real> surfaceA = coreA + radiusA * m.normal;
+    const Vec2T<Real> surfaceB = coreB - radiusB * m.normal;
+    p.point = Real(0.5) * (surfaceA + surfaceB);
+    p.separation = separation;
+    p.feature = featureOf(vertexA, vertexB);
+}
+
+/// One point where two core points are nearest; the normal is the line between them.
+template <class Real>
+ManifoldT<Real> betweenPoints(Vec2T<Real> coreA, Vec2T<Real> coreB, Real radiusA, Real radiusB,
+                              int vertexA, int vertexB, Real margin) {
+    ManifoldT<Real> m;
+    const Vec2T<Real> d = coreB - coreA;
+    const Real distance = length(d);
+    const Real separation = distance - (radiusA + radiusB);
+    if (separation > margin) return m;
+    m.normal = normalized(d);
+    if (m.normal == Vec2T<Real>{}) m.normal = {Real(0), Real(1)};  // centres coincide: any way out
+    addPoint(m, coreA, coreB, separation, radiusA, radiusB, vertexA, vertexB);
+    return m;
+}
+
+/// A hull of two or more vertices against a disc, in the frame of the hull.
+template <class Real>
+ManifoldT<Real> hullAndDisc(const HullT<Real>& a, const HullT<Real>& b, Vec2T<Real> center,
+                            Real margin) {
+    int best = 0;
+    Real separation = dot(a.normals[0], center - a.vertices[0]);
+    for (int i = 1; i < a.count; ++i) {
+        const Real s = dot(a.normals[at(i)], center - a.vertices[at(i)]);
+        if (s > separation) {
+            separation = s;
+            best = i;
+        }
+    }
+    if (separation - (a.radius + b.radius) > margin) return {};
+
+    const int second = a.next(best);
+    const Vec2T<Real> v1 = a.vertices[at(best)];
+    const Vec2T<Real> v2 = a.vertices[at(second)];
+    // Beyond an end of the edge the vertex is nearest. A centre inside the core has only faces;
+    // a core of two vertices has no inside.
+    if (a.count == 2 || separation > Real(featureTolerance)) {
+        if (dot(center - v1, v2 - v1) < Real(0)) {
+            return betweenPoints(v1, center, a.radius, b.radius, best, 0, margin);
+        }
+        if (dot(center - v2, v1 - v2) < Real(0)) {
+            return betweenPoints(v2, center, a.radius, b.radius, second, 0, margin);
+        }
+    }
+    ManifoldT<Real> m;
+    m.normal = a.normals[at(best)];
+    addPoint(m, center - separation * m.normal, center, separation - (a.radius + b.radius),
+             a.radius, b.radius, best, 0);
+    return m;
+}
+
+/// The edge of `reference` whose normal separates `other` the most, and by how much.
+template <class Real>
+struct Axis {
+    int edge = 0;
+    Real separation{0};
+};
+
+template <class Real>
+Axis<Real> bestAxis(const HullT<Real>& reference, const HullT<Real>& other) {
+    Axis<Real> best;
+    for (int i = 0; i < reference.count; ++i) {
+        const Vec2T<Real> n = reference.normals[at(i)];
+        const Vec2T<Real> v = reference.vertices[at(i)];
+        Real lowest = dot(n, other.vertices[0] - v);
+        for (int j = 1; j < other.count; ++j) {
+            lowest = minOf(lowest, dot(n, other.vertices[at(j)] - v));
+        }
+        if (i == 0 || lowest > best.separation) best = {i, lowest};
+    }
+    return best;
+}
+
+/// The edge of `hull` that faces against `normal` the most.
+template <class Real>
+int incidentEdge(const HullT<Real>& hull, Vec2T<Real> normal) {
+    int best = 0;
+    Real lowest = dot(hull.normals[0], normal);
+    for (int i = 1; i < hull.count; ++i) {
+        const Real d = dot(hull.normals[at(i)], normal);
+        if (d < lowest) {
+            lowest = d;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/// Nearest of the vertices of one hull to the edges of another, where the hulls are apart: the
+/// nearest features of two convex cores are a vertex and an edge, or two vertices.
+template <class Real>
+struct Nearest {
+    Real squared{0};
+    Vec2T<Real> pointA, pointB;
+    int vertexA = 0;
+    int vertexB = 0;
+    bool twoVertices = false;
+};
+
+template <class Real>
+void nearestToEdges(const HullT<Real>& a, const HullT<Real>& b, bool flipped, bool& found,
+                    Nearest<Real>& nearest) {
+    for (int i = 0; i < a.count; ++i) {
+        const int i2 = a.next(i);
+        const Vec2T<Real> v1 = a.vertices[at(i)];
+        const Vec2T<Real> edge = a.vertices[at(i2)] - v1;
+        const Real edgeSquared = lengthSquared(edge);
+        for (int j = 0; j < b.count; ++j) {
+            const Vec2T<Real> w = b.vertices[at(j)];
+            const Real t = dot(w - v1, edge);
+            const bool before = t <= Real(0);
+            const bool after = t >= edgeSquared;
+            const Vec2T<Real> onEdge = before  ? v1
+                                       : after ? a.vertices[at(i2)]
+                                               : v1 + (t / edgeSquared) * edge;
+            const Real squared = lengthSquared(w - onEdge);
+            if (found && !(squared < nearest.squared)) continue;
+            found = true;
+            const int vertex = after ? i2 : i;
+            nearest.squared = squared;
+            nearest.pointA = flipped ? w : onEdge;
+            nearest.pointB = flipped ? onEdge : w;
+            nearest.vertexA = flipped ? j : vertex;
+            nearest.vertexB = flipped ? vertex : j;
+            nearest.twoVertices = before || after;
+        }
+    }
+}
+
+/// Cuts the incident edge to the reference edge and keeps the points within the margin.
+/// `flipped`: the reference is B. Both hulls are in the frame of A.
+template <class Real>
+ManifoldT<Real> clipEdges(const HullT<Real>& reference, int edge, const HullT<Real>& incident,
+                          bool flipped, Real margin) {
+    const Vec2T<Real> normal = reference.normals[at(edge)];
+    const int r1 = edge;
+    const int r2 = reference.next(edge);
+    const int i1 = incidentEdge(incident, normal);
+    const int i2 = incident.next(i1);
+    const Vec2T<Real> v1 = reference.vertices[at(r1)];
+    const Vec2T<Real> v2 = reference.vertices[at(r2)];
+    const Vec2T<Real> w1 = incident.vertices[at(i1)];
+    const Vec2T<Real> w2 = incident.vertices[at(i2)];
+
+    // Along the reference edge; the incident edge runs the other way, so w2 comes first.
+    const Vec2T<Real> tangent = perpLeft(normal);
+    const Real extent = dot(v2 - v1, tangent);
+    const Real first = dot(w2 - v1, tangent);
+    const Real last = dot(w1 - v1, tangent);
+    const Real span = last - first;
+
+    ManifoldT<Real> m;
+    m.normal = flipped ? -normal : normal;
+    const Real radius = reference.radius + incident.radius;
+    const auto pointOn = [&](Real along) {
+        if (!(span > Real(1e-9))) return w2;
+        return w2 + ((along - first) / span) * (w1 - w2);
+    };
+    const auto keep = [&](Vec2T<Real> p, int referenceVertex, int incidentVertex) {
+        const Real core = dot(p - v1, normal);
+        const Real separation = core - radius;
+        if (separation > margin) return;
+        const Vec2T<Real> onReference = p - core * normal;
+        if (flipped) {
+            addPoint(m, p, onReference, separation, incident.radius, reference.radius,
+                     incidentVertex, referenceVertex);
+        } else {
+            addPoint(m, onReference, p, separation, reference.radius, incident.radius,
+                     referenceVertex, incidentVertex);
+        }
+    };
+    if (last < Real(0) || first > extent) {
+        // The edges pass each other by: only the nearer ends meet.
+        last < Real(0) ? keep(w1, r1, i1) : keep(w2, r2, i2);
+        return m;
+    }
+    const Real low = maxOf(first, Real(0));
+    const Real high = minOf(last, extent);
+    keep(first < Real(0) ? pointOn(low) : w2, r1, i2);
+    if (high - low > Real(1e-6)) keep(last > extent ? pointOn(high) : w1, r2, i1);
+    return m;
+}
+
+template <class Real>
+ManifoldT<Real> hulls(const HullT<Real>& a, const HullT<Real>& b, Real margin) {
+    const Real radius = a.radius + b.radius;
+    const Axis<Real> axisA = bestAxis(a, b);
+    if (axisA.separation > radius + margin) return {};
+    const Axis<Real> axisB = bestAxis(b, a);
+    if (axisB.separation > radius + margin) return {};
+
+    // Prefer A by a little, so that rounding does not make the reference flip back and forth.
+    const bool flipped = axisB.separation > axisA.separation + Real(0.1 * featureTolerance);
+    const Real separation = flipped ? axisB.separation : axisA.separation;
+
+    // Two cores of two vertices can be apart though no edge normal says so: end to end.
+    if (separation > Real(featureTolerance) || (a.count == 2 && b.count == 2)) {
+        Nearest<Real> nearest;
+        bool found = false;
+        nearestToEdges(a, b, false, found, nearest);
+        nearestToEdges(b, a, true, found, nearest);
+        const Real beyond = maxOf(separation, Real(0)) + Real(featureTolerance);
+        if (nearest.twoVertices && nearest.squared > beyond * beyond) {
+            return betweenPoints(nearest.pointA, nearest.pointB, a.radius, b.radius,
+                                 nearest.vertexA, nearest.vertexB, margin);
+        }
+    }
+    return flipped ? clipEdges(b, axisB.edge, a, true, margin)
+                   : clipEdges(a, axisA.edge, b, false, margin);
+}
+
+/// The hull as seen from another frame.
+template <class Real>
+HullT<Real> moved(const HullT<Real>& hull, const PoseT<Real>& pose) {
+    HullT<Real> out;
+    out.count = hull.count;
+    out.radius = hull.radius;
+    for (int i = 0; i < hull.count; ++i) {
+        out.vertices[at(i)] = transform(pose, hull.vertices[at(i)]);
+        out.normals[at(i)] = rotate(pose.q, hull.normals[at(i)]);
+    }
+    return out;
+}
+
+}  // namespace
+
+template <class Real>
+ManifoldT<Real> collide(const HullT<Real>& a, const HullT<Real>& b, const PoseT<Real>& relative,
+                        Real margin) {
+    if (b.count == 1) {
+        const Vec2T<Real> center = transform(relative, b.vertices[0]);
+        if (a.count == 1) {
+            return betweenPoints(a.vertices[0], center, a.radius, b.radius, 0, 0, margin);
+        }
+        return hullAndDisc(a, b, center, margin);
+    }
+    if (a.count == 1) {
+        // In the frame of B, then turned back.
+        ManifoldT<Real> m =
+            hullAndDisc(b, a, untransform(relative, a.vertices[0]), margin);
+        m.normal = -rotate(relative.q, m.normal);
+        for (ManifoldPointT<Real>& p : m.points) {
+            p.point = transform(relative, p.point);
+            p.feature = static_cast<std::uint16_t>(((p.feature & 0xff) << 8) | (p.feature >> 8));
+        }
+        return m;
+    }
+    return hulls(a, moved(b, relative), margin);
+}
+
+template ManifoldT<float> collide(const HullT<float>&, const HullT<float>&, const PoseT<float>&,
+                                  float);
+template ManifoldT<double> collide(const HullT<double>&, const HullT<double>&,
+                                   const PoseT<double>&, double);
+
+}  // namespace huestep
