@@ -1,0 +1,52 @@
+/// A client without a screen: a connection, a replica and a bot on a loop of their own.
+///
+///     PlayerConfig config;
+///     config.address = "127.0.0.1:7777";
+///     config.session = "play";
+///     config.fingerprint = ...;                      // what this build's self-test gave
+///     config.bot = makeWanderBot(seed);              // or makeIdleBot(), or readScript(FILE)
+///     config.ticks = 600;                            // 0: until SIGINT or SIGTERM
+///     Result<Statistics> played = play(std::move(config));
+///     if (!played) -> print played.error().message, exit 2
+///     exit status 1 if played->mismatches > 0
+///
+/// `play` blocks; several may run at once, each in a thread of its own (with `handleSignals` in
+/// at most one of them, and `stop` for the others).
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "client/bot.h"
+#include "client/replica.h"
+#include "core/result.h"
+#include "protocol/messages.h"
+
+namespace huestep::client {
+
+struct PlayerConfig {
+    std::string address;  ///< HOST:PORT
+    std::string session;
+    protocol::Role role = protocol::Role::Player;
+    protocol::Fingerprint fingerprint;
+    std::unique_ptr<Bot> bot;       ///< none: idle
+    std::uint64_t ticks = 0;        ///< frames to follow before leaving; 0: no end
+    int threads = 1;                ///< that step this client's world
+    bool handleSignals = true;
+    std::atomic<bool>* stop = nullptr;  ///< set it to end within 100 ms
+    /// How long to try: for the first connection, and for each reconnection.
+    double connectSeconds = 10.0;
+    double reconnectSeconds = 30.0;
+    /// Called once a second with the numbers so far; may be empty.
+    std::function<void(const Statistics&)> onProgress;
+    /// Called for what a person should know: refusals, reconnects, desyncs; may be empty.
+    std::function<void(const std::string& sentence)> onNotice;
+};
+
+/// Plays to the end. Fails with a sentence if it never got in, was refused, or lost the server
+/// for longer than `reconnectSeconds`.
+Result<Statistics> play(PlayerConfig config);
+
+}  // namespace huestep::client
