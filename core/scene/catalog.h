@@ -17,6 +17,7 @@ struct SceneParameter {
     double low = 0.0;
     double high = 0.0;
     std::string_view meaning;  ///< with its unit
+    bool whole = true;         ///< takes whole numbers alone
 };
 
 struct CatalogEntry {
@@ -31,7 +32,8 @@ struct CatalogEntry {
 /// All built-in scenes, by name.
 std::span<const CatalogEntry> sceneCatalog();
 
-/// A scene from `name` or `name:parameter=value,parameter=value`. The sentence of a failure names
+/// A scene from `name` or `name:parameter=value,parameter=value`; it passes `check`, and its name
+/// is the text. Numbers are read as in C, without locale. The sentence of a failure names
 /// the unknown scene or parameter, or the value out of range, and what there is instead.
 Result<Scene> sceneFromCatalog(std::string_view text);
 

@@ -14,7 +14,7 @@ namespace huestep {
 
 /// A scene that steps. Thread rule: one caller.
 class Engine {
-   public:
+ public:
     virtual ~Engine() = default;
     virtual void step() = 0;
     /// Place i: body i of the scene by ascending id. Positions are of centres of mass.

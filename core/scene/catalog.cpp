@@ -1,0 +1,202 @@
+#include "core/scene/catalog.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "core/scene/scenes.h"
+
+namespace huestep {
+
+namespace {
+
+std::vector<CatalogEntry> makeCatalog() {
+    using namespace scenes;
+    const std::string_view boxSide = "boxes in the lowest row";
+    return {
+        {"ballistic",
+         "a disc in free flight: after 1 s it must be on its parabola",
+         60,
+         {{"vx", 3, -100, 100, "m/s at the start, to the right", false},
+          {"vy", 4, -100, 100, "m/s at the start, upwards", false}},
+         ballistic},
+        {"chain",
+         "10 links of 1 kg and a heavy ball: joint error at high mass ratio",
+         600,
+         {{"ratio", 100, 1, 1e6, "mass of the ball, in links (kg)", false},
+          {"angle", 0, 0, 170, "degrees from hanging at the start; 90 is horizontal", false}},
+         chain},
+        {"double_pendulum",
+         "two discs on 1 m arms, released horizontally: against its differential equation",
+         60,
+         {},
+         doublePendulum},
+        {"hinges",
+         "leaning columns of hinged boxes that topple, come to rest and sleep",
+         600,
+         {{"columns", 4, 1, 40, "columns"}, {"rows", 12, 1, 60, "boxes in a column"}},
+         hinges},
+        {"joint_grid",
+         "a net of discs on revolute joints, hung from 7 of them: joints alone",
+         500,
+         {{"n", 100, 4, 300, "discs along a side"}},
+         jointGrid},
+        {"many_pyramids",
+         "hundreds of small pyramids: many islands of equal size",
+         200,
+         {{"rows", 20, 1, 40, "rows of pyramids"},
+          {"columns", 20, 1, 40, "pyramids in a row"},
+          {"base", 10, 1, 30, boxSide}},
+         manyPyramids},
+        {"mixed", "every shape, joint, filter and kind of body in one small world", 600, {}, mixed},
+        {"pendulum",
+         "a disc of radius 0.1 m on a 1 m arm: period and energy",
+         600,
+         {{"angle", 90, 1, 170, "degrees from hanging at the start", false}},
+         pendulum},
+        {"pyramid",
+         "one large pyramid: one island, contacts alone",
+         500,
+         {{"base", 100, 1, 200, boxSide}},
+         pyramid},
+        {"sandbox",
+         "a walled arena to play in: piles, see-saw, paddle, rope and swing; players have bodies",
+         3600,
+         {},
+         sandbox},
+        {"small",
+         "three columns of boxes and a disc dropped on them: the cost of little work",
+         600,
+         {{"n", 40, 1, 3000, "boxes"}, {"sleep", 1, 0, 1, "1: they fall asleep at rest"}},
+         small},
+        {"stack",
+         "one tower of unit boxes with a zig-zag of 1 cm: it must stand",
+         1200,
+         {{"n", 20, 1, 200, "boxes"}},
+         stack},
+        {"tumbler",
+         "boxes in a turning drum: contacts that come and go all the time",
+         750,
+         {{"count", 45, 1, 100, "boxes along a side of the block"}},
+         tumbler},
+    };
+}
+
+std::string numberText(double value) {
+    std::array<char, 32> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+    return {buffer.data(), end};
+}
+
+/// What a person typed, cut to a length that fits into a sentence.
+std::string quoted(std::string_view text) {
+    std::string result;
+    result += '\'';
+    result += text.substr(0, 40);
+    result += text.size() > 40 ? "...'" : "'";
+    return result;
+}
+
+std::string sceneNames() {
+    std::string names;
+    for (const CatalogEntry& entry : sceneCatalog()) {
+        if (!names.empty()) names += ", ";
+        names += entry.name;
+    }
+    return names;
+}
+
+std::string parameterNames(const CatalogEntry& entry) {
+    if (entry.parameters.empty()) return "it has none";
+    std::string names;
+    for (const SceneParameter& parameter : entry.parameters) {
+        names += names.empty() ? "it has " : ", ";
+        names += parameter.name;
+    }
+    return names;
+}
+
+/// Reads one `parameter=value` into its place in `values`.
+Status readParameter(const CatalogEntry& entry, std::string_view text, std::vector<double>& values,
+                     std::vector<bool>& given) {
+    const std::string scene(entry.name);
+    const std::size_t equals = text.find('=');
+    const std::string_view name = text.substr(0, equals);
+    std::size_t place = 0;
+    while (place < entry.parameters.size() && entry.parameters[place].name != name) ++place;
+    if (place == entry.parameters.size()) {
+        return Error{scene + " has no parameter " + quoted(name) + "; " + parameterNames(entry)};
+    }
+    const SceneParameter& parameter = entry.parameters[place];
+    const std::string path = scene + ": " + std::string(parameter.name);
+    if (equals == std::string_view::npos) {
+        return Error{path + " needs a value, as in " + std::string(parameter.name) + "=" +
+                     numberText(parameter.standard)};
+    }
+    if (given[place]) return Error{path + " is given twice"};
+    const std::string_view digits = text.substr(equals + 1);
+    double value = 0.0;
+    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (read.ec != std::errc() || read.ptr != digits.data() + digits.size()) {
+        return Error{path + ": " + quoted(digits) + " is not a number"};
+    }
+    const bool inRange = value >= parameter.low && value <= parameter.high;
+    if (!inRange || (parameter.whole && value != std::floor(value))) {
+        return Error{path + " must be a " + (parameter.whole ? "whole " : "") + "number from " +
+                     numberText(parameter.low) + " to " + numberText(parameter.high) + ", is " +
+                     numberText(value)};
+    }
+    values[place] = value;
+    given[place] = true;
+    return Done{};
+}
+
+}  // namespace
+
+std::span<const CatalogEntry> sceneCatalog() {
+    static const std::vector<CatalogEntry> catalog = makeCatalog();
+    return catalog;
+}
+
+const CatalogEntry* findInCatalog(std::string_view text) {
+    const std::string_view name = text.substr(0, text.find(':'));
+    for (const CatalogEntry& entry : sceneCatalog()) {
+        if (entry.name == name) return &entry;
+    }
+    return nullptr;
+}
+
+Result<Scene> sceneFromCatalog(std::string_view text) {
+    const CatalogEntry* entry = findInCatalog(text);
+    const std::size_t colon = text.find(':');
+    if (entry == nullptr) {
+        return Error{"there is no scene " + quoted(text.substr(0, colon)) + "; there are " +
+                     sceneNames()};
+    }
+    if (text.size() > caps::maxSceneName) {
+        return Error{"a scene's name and parameters take at most 256 characters"};
+    }
+    std::vector<double> values;
+    for (const SceneParameter& parameter : entry->parameters) values.push_back(parameter.standard);
+    std::vector<bool> given(values.size(), false);
+    std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
+    if (colon != std::string_view::npos && rest.empty()) {
+        return Error{std::string(entry->name) + ": nothing stands after the colon; " +
+                     parameterNames(*entry)};
+    }
+    while (!rest.empty()) {
+        const std::size_t comma = rest.find(',');
+        const Status read = readParameter(*entry, rest.substr(0, comma), values, given);
+        if (!read) return read.error();
+        if (comma == std::string_view::npos) break;
+        rest = rest.substr(comma + 1);
+        if (rest.empty()) {
+            return Error{std::string(entry->name) + ": nothing stands after the last comma"};
+        }
+    }
+    Scene scene = entry->build(values);
+    scene.name = text;
+    return scene;
+}
+
+}  // namespace huestep

@@ -1,0 +1,72 @@
+#include "core/scene/scenes.h"
+
+#include <algorithm>
+
+#include "core/math/trig.h"
+
+namespace huestep::scenes {
+
+std::uint32_t add(Scene& scene, const BodyDef& body) {
+    scene.bodies.push_back(body);
+    return static_cast<std::uint32_t>(scene.bodies.size() - 1);
+}
+
+BodyDef bodyOf(BodyType type, Vec2 position, const ShapeDef& shape) {
+    BodyDef body;
+    body.type = type;
+    body.position = position;
+    body.shapes.push_back(shape);
+    return body;
+}
+
+JointDef hingeAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point) {
+    const BodyDef& a = scene.bodies[bodyA];
+    const BodyDef& b = scene.bodies[bodyB];
+    JointDef joint;
+    joint.kind = JointKind::Revolute;
+    joint.bodyA = bodyA;
+    joint.bodyB = bodyB;
+    joint.anchorA = untransform(Pose{a.position, a.rotation}, point);
+    joint.anchorB = untransform(Pose{b.position, b.rotation}, point);
+    joint.reference = relative(a.rotation, b.rotation);
+    return joint;
+}
+
+JointDef rodBetween(const Scene& scene, std::uint32_t bodyA, Vec2 localA, std::uint32_t bodyB,
+                    Vec2 localB) {
+    const BodyDef& a = scene.bodies[bodyA];
+    const BodyDef& b = scene.bodies[bodyB];
+    JointDef joint;
+    joint.kind = JointKind::Distance;
+    joint.bodyA = bodyA;
+    joint.bodyB = bodyB;
+    joint.anchorA = localA;
+    joint.anchorB = localB;
+    joint.length = length(transform(Pose{b.position, b.rotation}, localB) -
+                          transform(Pose{a.position, a.rotation}, localA));
+    return joint;
+}
+
+ShapeDef regularPolygon(int sides, float circumradius, float radius) {
+    std::array<Vec2, maxPolygonVertices> corners{};
+    const std::size_t used = static_cast<std::size_t>(sides);
+    for (std::size_t i = 0; i < used; ++i) {
+        const double angle = 2.0 * pi * static_cast<double>(i) / static_cast<double>(sides);
+        const RotationT<double> q = rotationOf(angle);
+        corners[i] = circumradius * Vec2{static_cast<float>(q.c), static_cast<float>(q.s)};
+    }
+    return ShapeDef::polygon(std::span(corners).first(used), radius);
+}
+
+void fitLimits(Scene& scene) {
+    std::size_t shapes = 0;
+    for (const BodyDef& body : scene.bodies) shapes += body.shapes.size();
+    const auto atLeast = [](std::uint32_t& limit, std::size_t count) {
+        limit = std::max(limit, static_cast<std::uint32_t>(count));
+    };
+    atLeast(scene.limits.bodies, scene.bodies.size());
+    atLeast(scene.limits.shapes, shapes);
+    atLeast(scene.limits.joints, scene.joints.size());
+}
+
+}  // namespace huestep::scenes

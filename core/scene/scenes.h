@@ -1,0 +1,76 @@
+/// The builders behind the catalog, and the few verbs they are written with. Internal to
+/// core/scene: everyone else asks `sceneFromCatalog`.
+///
+/// Each builder takes the values of its catalog entry's parameters, in order and within range.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/scene/scene.h"
+
+namespace huestep::scenes {
+
+using Values = std::span<const double>;
+
+// Benchmarks, as the performance page sets them up.
+Scene pyramid(Values values);
+Scene manyPyramids(Values values);
+Scene jointGrid(Values values);
+Scene tumbler(Values values);
+Scene small(Values values);
+
+// Accuracy: closed forms or reference solutions are known.
+Scene ballistic(Values values);
+Scene pendulum(Values values);
+Scene doublePendulum(Values values);
+Scene chain(Values values);
+Scene stack(Values values);
+
+// Everything at once.
+Scene hinges(Values values);
+Scene mixed(Values values);
+Scene sandbox(Values values);
+
+/// Adds a body and returns its place.
+std::uint32_t add(Scene& scene, const BodyDef& body);
+
+/// A body of one shape.
+BodyDef bodyOf(BodyType type, Vec2 position, const ShapeDef& shape);
+
+/// A revolute joint of two bodies of the scene about a point of the world; its coordinate is 0 as
+/// the bodies stand, and their shapes do not touch each other.
+JointDef hingeAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point);
+
+/// A distance joint between the points `localA` and `localB`, as long as the bodies stand apart.
+JointDef rodBetween(const Scene& scene, std::uint32_t bodyA, Vec2 localA, std::uint32_t bodyB,
+                    Vec2 localB);
+
+/// A regular polygon of `sides` corners on a circle of `circumradius`.
+ShapeDef regularPolygon(int sides, float circumradius, float radius = 0.0f);
+
+/// Raises the scene's limits where it holds more than the standard ones allow.
+void fitLimits(Scene& scene);
+
+/// Small differences between bodies from a fixed sequence: 64-bit linear congruential generator
+/// (Knuth's MMIX constants), upper bits only.
+class Sequence {
+ public:
+    explicit Sequence(std::uint64_t seed) : m_state(seed) {}
+    /// In [low, high).
+    float between(float low, float high) {
+        m_state = m_state * 6364136223846793005u + 1442695040888963407u;
+        const float unit = static_cast<float>(m_state >> 40) * (1.0f / 16777216.0f);
+        return low + (high - low) * unit;
+    }
+
+ private:
+    std::uint64_t m_state;
+};
+
+/// A parameter that counts something.
+inline std::uint32_t count(double value) {
+    return static_cast<std::uint32_t>(value);
+}
+
+}  // namespace huestep::scenes
