@@ -10,12 +10,16 @@
 namespace huestep {
 
 struct Measures {
-    double energy = 0.0;           ///< J: Σ m v²/2 + I ω²/2 − m g·x, of dynamic bodies
+    double energy = 0.0;  ///< J: Σ m v²/2 + I ω²/2 − m g·x, of dynamic bodies, where g
+                          ///< is the gravity that the body feels (its scale included)
     double maxPenetration = 0.0;   ///< m, from a fresh narrow phase in double; 0: none
-    double meanPenetration = 0.0;  ///< m, over the overlapping pairs
-    double maxJointError = 0.0;    ///< m, largest |pA − pB| of revolutes, or length outside range
+    double meanPenetration = 0.0;  ///< m, over the pairs of shapes that overlap and may touch
+    /// m, largest |pA − pB| of revolutes; of distance joints how far the length is outside the
+    /// limit or, without limit and spring, off the rest length.
+    double maxJointError = 0.0;
 };
 
+/// O(n log n) with a sweep along x: 22,000 bodies in pyramids take some tens of milliseconds.
 /// `bodies`, `shapes`, `joints` and `motions` as `World` shows them: sorted by id, places matching.
 Measures measure(const WorldInfo& world, std::span<const BodyInfo> bodies,
                  std::span<const ShapeInfo> shapes, std::span<const JointInfo> joints,

@@ -139,7 +139,7 @@ struct JointDef {
     JointId id = 0;  ///< as BodyDef::id
     JointKind kind = JointKind::Revolute;
     bool collideConnected = false;  ///< whether shapes of the two bodies may touch
-    std::uint32_t bodyA = 0;        ///< place in `bodies`
+    std::uint32_t bodyA = 0;        ///< place in `bodies`; a mouse joint has no body A
     std::uint32_t bodyB = 0;
     Vec2 anchorA;           ///< m, in the frame of body A's origin
     Vec2 anchorB;           ///< m, in the frame of body B's origin

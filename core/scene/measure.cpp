@@ -1,0 +1,178 @@
+#include "core/scene/measure.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/collision/manifold.h"
+
+namespace huestep {
+
+namespace {
+
+using Vec2d = Vec2T<double>;
+using Posed = PoseT<double>;
+
+constexpr std::uint32_t nowhere = 0xffffffffu;
+
+Vec2d wide(Vec2 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y)};
+}
+
+/// The pose in double, its rotation brought back to unit length: the measure judges positions, not
+/// the rounding of a unit vector.
+Posed poseOf(const BodyMotion& motion) {
+    const RotationT<double> q{static_cast<double>(motion.rotation.c),
+                              static_cast<double>(motion.rotation.s)};
+    return {wide(motion.position), normalized(q)};
+}
+
+std::uint32_t placeOf(std::span<const BodyInfo> bodies, BodyId id) {
+    const auto found =
+        std::lower_bound(bodies.begin(), bodies.end(), id,
+                         [](const BodyInfo& body, BodyId wanted) { return body.id < wanted; });
+    if (found == bodies.end() || found->id != id) return nowhere;
+    return static_cast<std::uint32_t>(found - bodies.begin());
+}
+
+double energyOf(const WorldInfo& world, std::span<const BodyInfo> bodies,
+                std::span<const BodyMotion> motions) {
+    const Vec2d gravity = wide(world.gravity);
+    double energy = 0.0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (!bodies[i].dynamic()) continue;
+        const double mass = static_cast<double>(bodies[i].mass);
+        const double inertia = static_cast<double>(bodies[i].inertia);
+        const double spin = static_cast<double>(motions[i].angularVelocity);
+        const double scale = static_cast<double>(bodies[i].gravityScale);
+        energy += 0.5 * mass * lengthSquared(wide(motions[i].velocity));
+        energy += 0.5 * inertia * spin * spin;
+        energy -= mass * scale * dot(gravity, wide(motions[i].position));
+    }
+    return energy;
+}
+
+/// How far the joint is from where it should be; 0 for a mouse joint, whose target may be far.
+double errorOf(const JointInfo& joint, const Posed& poseA, const Posed& poseB) {
+    const Vec2d gap = transform(poseB, wide(joint.anchorB)) - transform(poseA, wide(joint.anchorA));
+    const double distance = length(gap);
+    if (joint.kind() == JointKind::Revolute) return distance;
+    if (joint.kind() == JointKind::Mouse) return 0.0;
+    if (joint.has(JointInfo::limit)) {
+        const double below = static_cast<double>(joint.lower) - distance;
+        const double above = distance - static_cast<double>(joint.upper);
+        return std::max({0.0, below, above});
+    }
+    if (joint.has(JointInfo::spring)) return 0.0;
+    return std::abs(distance - static_cast<double>(joint.length));
+}
+
+/// A shape where it is, with what decides whether it may touch another.
+struct Placed {
+    BoundsT<double> bounds;
+    HullT<double> hull;
+    std::uint32_t body = 0;   ///< place
+    std::uint32_t shape = 0;  ///< place
+};
+
+/// Pairs of places of bodies, lower first, whose shapes may not touch because a joint links them.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> linkedBodies(
+    std::span<const BodyInfo> bodies, std::span<const JointInfo> joints) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> linked;
+    for (const JointInfo& joint : joints) {
+        if (joint.has(JointInfo::collideConnected)) continue;
+        linked.emplace_back(
+            std::minmax(placeOf(bodies, joint.bodyA), placeOf(bodies, joint.bodyB)));
+    }
+    std::sort(linked.begin(), linked.end());
+    return linked;
+}
+
+std::vector<Placed> placedShapes(std::span<const BodyInfo> bodies,
+                                 std::span<const ShapeInfo> shapes,
+                                 std::span<const BodyMotion> motions) {
+    std::vector<Placed> placed;
+    placed.reserve(shapes.size());
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        Placed entry;
+        entry.shape = static_cast<std::uint32_t>(i);
+        entry.body = placeOf(bodies, shapes[i].body);
+        if (entry.body == nowhere) continue;
+        entry.hull = hullOf<double>(shapes[i]);
+        entry.bounds = boundsOf(entry.hull, poseOf(motions[entry.body]));
+        placed.push_back(entry);
+    }
+    return placed;
+}
+
+/// Depth of the overlap of two shapes; 0 where they are apart.
+double depthOf(const Placed& a, const Placed& b, std::span<const BodyMotion> motions) {
+    const Posed seen = relative(poseOf(motions[a.body]), poseOf(motions[b.body]));
+    const ManifoldT<double> manifold = collide(a.hull, b.hull, seen, 0.0);
+    double depth = 0.0;
+    for (int i = 0; i < manifold.count; ++i) {
+        depth = std::max(depth, -manifold.points[i].separation);
+    }
+    return depth;
+}
+
+/// Calls `visit` for every pair of shapes whose bounds overlap: sort along x, then sweep.
+template <class Visit>
+void sweep(std::vector<Placed>& placed, const Visit& visit) {
+    std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+        return a.bounds.low.x != b.bounds.low.x ? a.bounds.low.x < b.bounds.low.x
+                                                : a.shape < b.shape;
+    });
+    std::vector<BoundsT<double>> bounds;
+    bounds.reserve(placed.size());
+    for (const Placed& entry : placed) bounds.push_back(entry.bounds);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        for (std::size_t j = i + 1; j < placed.size(); ++j) {
+            if (bounds[j].low.x > bounds[i].high.x) break;
+            if (bounds[j].low.y > bounds[i].high.y || bounds[i].low.y > bounds[j].high.y) continue;
+            visit(placed[i], placed[j]);
+        }
+    }
+}
+
+void measurePenetration(std::span<const BodyInfo> bodies, std::span<const ShapeInfo> shapes,
+                        std::span<const JointInfo> joints, std::span<const BodyMotion> motions,
+                        Measures& into) {
+    const auto linked = linkedBodies(bodies, joints);
+    std::vector<Placed> placed = placedShapes(bodies, shapes, motions);
+    double sum = 0.0;
+    std::size_t pairs = 0;
+    sweep(placed, [&](const Placed& a, const Placed& b) {
+        if (a.body == b.body) return;
+        if (!bodies[a.body].dynamic() && !bodies[b.body].dynamic()) return;
+        if (!mayTouch(shapes[a.shape].filter(), shapes[b.shape].filter())) return;
+        const std::pair<std::uint32_t, std::uint32_t> link = std::minmax(a.body, b.body);
+        if (std::binary_search(linked.begin(), linked.end(), link)) return;
+        // Lower body first, as the world does: the measure then sees the same manifold.
+        const double depth = a.body < b.body ? depthOf(a, b, motions) : depthOf(b, a, motions);
+        if (depth <= 0.0) return;
+        into.maxPenetration = std::max(into.maxPenetration, depth);
+        sum += depth;
+        ++pairs;
+    });
+    if (pairs > 0) into.meanPenetration = sum / static_cast<double>(pairs);
+}
+
+}  // namespace
+
+Measures measure(const WorldInfo& world, std::span<const BodyInfo> bodies,
+                 std::span<const ShapeInfo> shapes, std::span<const JointInfo> joints,
+                 std::span<const BodyMotion> motions) {
+    Measures result;
+    result.energy = energyOf(world, bodies, motions);
+    for (const JointInfo& joint : joints) {
+        const std::uint32_t a = placeOf(bodies, joint.bodyA);
+        const std::uint32_t b = placeOf(bodies, joint.bodyB);
+        if (a == nowhere || b == nowhere) continue;
+        const double error = errorOf(joint, poseOf(motions[a]), poseOf(motions[b]));
+        result.maxJointError = std::max(result.maxJointError, error);
+    }
+    measurePenetration(bodies, shapes, joints, motions, result);
+    return result;
+}
+
+}  // namespace huestep
