@@ -61,7 +61,7 @@ struct ReplicaConfig {
     protocol::Role role = protocol::Role::Player;
     protocol::Fingerprint fingerprint;
     StepResources resources;
-    std::uint32_t checkpointEvery = 60;  ///< ticks from one Intent with a checkpoint to the next
+    std::uint32_t checkpointEvery = 30;  ///< ticks from one Intent with a checkpoint to the next
 };
 
 class Replica {

@@ -44,7 +44,7 @@ struct Limits {
     std::uint32_t joinsPerFrame = 16;
     std::uint32_t seats = 1'024;
     std::uint32_t inputDelay = 0;           ///< ticks between an intent and its earliest frame
-    std::uint32_t lateTicks = 30;           ///< a player silent for longer is `substituted`
+    std::uint32_t lateTicks = 60;           ///< a player silent for longer is `substituted`
     Instant seatKept = 30 * second;         ///< for a player whose connection broke
     std::uint32_t recentFrames = 1'800;     ///< frames kept for those who are behind
     std::size_t recentBytes = 4u << 20;     ///< the same in bytes; whichever is fewer

@@ -1,0 +1,166 @@
+/// The protocol with one client, as a state machine: bytes and time in, bytes out.
+///
+///     Greeting --Hello--> Joining --its frame is on disk--> Live --> Ending
+///         |                                                  ^
+///         +--Hello of a spectator, or with a resume token ---+
+///
+/// Output is pulled: the transport asks `next` while little of what it got is unsent. So a client
+/// that does not read costs the server nothing but a place in the ring of frames, which all share,
+/// and no message of one client can delay another's. What a slow client meets:
+///  - behind by `resyncBehind`: it gets a snapshot in place of the frames it missed;
+///  - still behind after `dropBehind`, or not a byte taken for so long: Bye TooSlow, may resume.
+/// Every byte from outside meets a limit; whatever is wrong ends in a Bye that says so.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/frame.h"
+#include "protocol/messages.h"
+#include "server/history.h"
+#include "server/limits.h"
+#include "server/log.h"
+#include "server/session.h"
+#include "server/token_bucket.h"
+
+namespace huestep::server {
+
+using ConnectionId = std::uint64_t;
+
+/// What happened since the start, for the log and for tests.
+struct Counters {
+    std::uint64_t accepted = 0;
+    std::uint64_t refused = 0;  ///< connections over a limit
+    std::uint64_t bytesIn = 0;
+    std::uint64_t bytesOut = 0;
+    std::uint64_t badMessages = 0;
+    std::uint64_t tooSlow = 0;
+    std::uint64_t tooFast = 0;
+    std::uint64_t timeouts = 0;
+    std::uint64_t resyncs = 0;
+    std::uint64_t snapshots = 0;
+    std::uint64_t commandsQueued = 0;
+    std::uint64_t commandsOld = 0;      ///< repetitions, let go
+    std::uint64_t commandsDropped = 0;  ///< the session's queue was full
+    std::uint64_t checkpointsChecked = 0;
+    std::uint64_t checkpointMismatches = 0;
+    std::uint64_t desyncReports = 0;
+    std::uint64_t ticksLetGo = 0;
+};
+
+/// What a connection needs of the process around it.
+struct ConnectionContext {
+    Limits limits;
+    protocol::Fingerprint fingerprint;
+    LogSink log;
+    Counters counters;
+    std::function<Session*(const std::string& name)> findSession;
+    /// Another connection that holds this seat must let go of it.
+    std::function<void(Session& session, PlayerId player, ConnectionId by, Instant now)> takeOver;
+};
+
+class Connection {
+   public:
+    Connection(ConnectionId id, std::string peer, ConnectionContext& context, Instant now);
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    [[nodiscard]] ConnectionId id() const { return m_id; }
+    [[nodiscard]] const Session* session() const { return m_session; }
+    [[nodiscard]] PlayerId player() const { return m_player; }
+    [[nodiscard]] bool greeted() const { return m_phase != Phase::Greeting; }
+    [[nodiscard]] bool live() const { return m_phase == Phase::Live; }
+
+    /// Takes bytes as they came.
+    void receive(std::span<const std::byte> bytes, Instant now);
+    /// Lets time pass: deadlines, joins, answers that had to wait. After each tick, and now and
+    /// then.
+    void advance(Instant now);
+    /// The next bytes to write, or null. `unsent`: what the transport still holds.
+    SharedBytes next(std::size_t unsent, Instant now);
+    /// Nothing more comes: close once the transport has sent what it holds, or at `closeBy`.
+    [[nodiscard]] bool finished() const;
+    [[nodiscard]] Instant closeBy() const { return m_closeBy; }
+
+    /// Ends the connection with a Bye.
+    void end(protocol::ByeReason reason, std::string text, bool mayResume, Instant now);
+    /// The transport is gone.
+    void lost(Instant now);
+    /// The seat belongs to another connection now.
+    void loseSeat(Instant now);
+
+   private:
+    enum class Phase : std::uint8_t { Greeting, Joining, Live, Ending };
+    /// What a live client gets besides answers.
+    enum class Feed : std::uint8_t {
+        Frames,
+        Snapshot,
+        Rebuild  ///< waits for the snapshot of the tick it asked for
+    };
+
+    static bool gate(protocol::MessageType type, std::uint32_t bytes, const void* self);
+    void handle(protocol::Message message, Instant now);
+    void on(const protocol::Hello& hello, Instant now);
+    void on(protocol::Intent& intent, Instant now);
+    void on(const protocol::SnapshotRequest& request, Instant now);
+    void on(const protocol::HashQuery& query, Instant now);
+    void on(const protocol::DesyncReport& report, Instant now);
+    void on(const protocol::Ping& ping);
+    void on(const protocol::Bye& bye, Instant now);
+
+    void enter(Session& session, PlayerId player, Instant now);
+    void startFeed(const protocol::Hello& hello, Instant now);
+    void startSnapshot(SharedSnapshot snapshot, Instant now);
+    void checkCheckpoint(const protocol::Checkpoint& checkpoint);
+    bool mayCost(Instant now);
+    void answerQueries(Instant now);
+    void checkDeadlines(Instant now);
+    void checkPace(Instant now);
+    void leaveSeat(bool forGood, Instant now);
+    void send(const protocol::Message& message);
+    SharedBytes nextOfSnapshot(Instant now);
+    SharedBytes nextFrame(Instant now);
+    LogLine line(std::string_view event) const;
+
+    ConnectionId m_id;
+    std::string m_peer;
+    ConnectionContext& m_context;
+    protocol::FrameSplitter m_splitter;
+    Phase m_phase = Phase::Greeting;
+    Session* m_session = nullptr;
+    PlayerId m_player = 0;
+    JoinId m_join = 0;
+    std::optional<protocol::Hello> m_hello;
+
+    // Output.
+    std::deque<SharedBytes> m_outbox;
+    std::size_t m_outboxBytes = 0;
+    Feed m_feed = Feed::Frames;
+    std::uint64_t m_cursor = 0;  ///< tick of the next frame
+    SharedSnapshot m_snapshot;
+    std::size_t m_snapshotAt = 0;
+    bool m_snapshotBegun = false;
+    std::uint64_t m_exactTick = 0;
+    Instant m_exactSince = 0;
+    std::deque<std::pair<std::uint64_t, Instant>> m_queries;  ///< ticks of hash queries, since when
+
+    // Time.
+    Instant m_accepted;
+    Instant m_heard;
+    Instant m_partialSince = 0;  ///< 0: no message is incomplete
+    Instant m_drained;           ///< when the transport last took or sent something
+    std::size_t m_lastUnsent = 0;
+    Instant m_pinged = 0;
+    Instant m_behindSince = 0;   ///< 0: up to date
+    bool m_resynced = false;     ///< since it fell behind
+    Instant m_closeBy = ~Instant{0};
+    TokenBucket m_messages;
+    TokenBucket m_heavy;
+    std::uint64_t m_pingNonce = 0;
+};
+
+}  // namespace huestep::server

@@ -1,0 +1,87 @@
+/// Every session and every connection of a process, without I/O: the whole server for a test, and
+/// all of it but sockets, files and clocks for `Host`.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/connection.h"
+#include "server/session.h"
+
+namespace huestep::server {
+
+/// Where closed ticks go. What became of them is told by `Hub::committed` and `Hub::failed`.
+class JournalSink {
+   public:
+    virtual ~JournalSink() = default;
+    /// Must not block and must not call back into the hub.
+    virtual void write(const std::string& session, ClosedTick closed) = 0;
+};
+
+struct HubConfig {
+    Limits limits;
+    protocol::Fingerprint fingerprint;
+    LogSink log;
+    StepResources resources;
+};
+
+class Hub {
+   public:
+    Hub(HubConfig config, JournalSink& journal);
+    Hub(const Hub&) = delete;
+    Hub& operator=(const Hub&) = delete;
+
+    /// Hosts one more session. The sentence says which limit or name stands against it.
+    Result<Session*> add(SessionStart start, Instant now);
+    [[nodiscard]] std::vector<Session*> sessions();
+    [[nodiscard]] const Session* find(const std::string& name) const;
+    [[nodiscard]] const Counters& counters() const { return m_context.counters; }
+    [[nodiscard]] const Limits& limits() const { return m_context.limits; }
+
+    /// None: over a limit; the caller closes the socket without a word.
+    std::optional<ConnectionId> accept(std::string peer, Instant now);
+    void receive(ConnectionId id, std::span<const std::byte> bytes, Instant now);
+    /// See `Connection::next`. Null for an unknown id too.
+    SharedBytes next(ConnectionId id, std::size_t unsent, Instant now);
+    /// Whether the transport should close it: all is said, or time is up.
+    [[nodiscard]] bool toClose(ConnectionId id, std::size_t unsent, Instant now) const;
+    /// The transport is closed; the id is forgotten.
+    void closed(ConnectionId id, Instant now);
+    [[nodiscard]] std::vector<ConnectionId> connections() const;
+    [[nodiscard]] const Connection* connection(ConnectionId id) const;
+
+    /// Closes a tick of a session, if it may; then everyone's time passes.
+    bool closeTick(Session& session, Instant now);
+    /// One step of work that no tick waits for. False: there is none.
+    bool work(Session& session);
+    /// Lets time pass for all connections.
+    void advance(Instant now);
+    void noteLetGo(std::uint64_t ticks) { m_context.counters.ticksLetGo += ticks; }
+
+    void committed(const std::string& session, std::uint64_t below);
+    /// Ends the session's connections: nothing it does could be kept.
+    void failed(const std::string& session, const std::string& sentence, Instant now);
+
+    /// Bye to all, and a last record of each session to the journal.
+    void stop(Instant now);
+
+   private:
+    Session* findByName(const std::string& name);
+    void takeOver(Session& session, PlayerId player, ConnectionId by, Instant now);
+
+    ConnectionContext m_context;
+    StepResources m_resources;
+    JournalSink& m_journal;
+    std::map<std::string, std::unique_ptr<Session>> m_sessions;
+    std::map<ConnectionId, std::unique_ptr<Connection>> m_connections;
+    ConnectionId m_lastConnection = 0;
+    bool m_stopping = false;
+};
+
+}  // namespace huestep::server

@@ -1,0 +1,153 @@
+#include "server/session.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace huestep::server {
+
+namespace {
+
+const PlayerRecord* playerIn(const World& world, PlayerId id) {
+    for (const PlayerRecord& player : world.players()) {
+        if (player.id == id) return &player;
+    }
+    return nullptr;
+}
+
+std::uint64_t sequenceIn(const World& world, PlayerId id) {
+    const PlayerRecord* player = playerIn(world, id);
+    return player ? player->lastSequence : 0;
+}
+
+}  // namespace
+
+Session::Session(SessionStart start, const Limits& limits, Instant now)
+    : m_name(std::move(start.name)),
+      m_epoch(start.epoch),
+      m_limits(limits),
+      m_world(std::move(start.world)),
+      m_seats(m_name, start.epoch, start.key, limits),
+      m_queue(limits.queuedPerPlayer, limits.queuedInTotal),
+      m_frames(limits.recentFrames, limits.recentBytes),
+      m_keyframes(limits.keyframes),
+      m_rebuilder(m_frames, m_keyframes, limits.rebuildsWaiting),
+      m_committed(m_world.tick()) {
+    for (protocol::Frame& frame : start.tail) m_frames.push(std::move(frame));
+    if (start.base) m_keyframes.push(std::move(start.base));
+    m_keyframes.push(takeSnapshot(m_world));
+    m_seats.recover(m_world, now);
+    m_seats.committed(m_committed);
+    noteDefinitions();
+}
+
+double Session::ticksPerSecond() const {
+    return 1.0 / static_cast<double>(m_world.info().stepSeconds);
+}
+
+bool Session::hasPlayers() const { return (m_world.info().flags & WorldInfo::players) != 0; }
+
+bool Session::mayClose() const {
+    return !m_failure && tick() < m_committed + m_limits.uncommittedTicks;
+}
+
+ClosedTick Session::closeTick(Instant now, const StepResources& with) {
+    assert(mayClose());
+    protocol::Frame frame;
+    frame.tick = tick();
+    frame.commands = gatherCommands(now);
+    frame.substituted = m_seats.late(tick());
+    frame.previousRoot = m_world.motionRoot();
+    frame.committed = m_committed;
+
+    m_world.step(frame.commands, with);
+    m_seats.applied(m_world, frame.tick);
+    noteDefinitions();
+
+    ClosedTick out;
+    out.commits = tick();
+    out.entries.push_back({m_epoch, frame});
+    m_frames.push(std::move(frame));
+    if (tick() % m_limits.keyframeTicks == 0) m_keyframes.push(takeSnapshot(m_world));
+    if (tick() % m_limits.journalSnapshotTicks == 0) {
+        const ClosedTick record = finalRecord();
+        out.entries.insert(out.entries.end(), record.entries.begin(), record.entries.end());
+        out.snapshot = record.snapshot;
+    }
+    return out;
+}
+
+std::vector<Command> Session::gatherCommands(Instant now) {
+    std::vector<Command> commands =
+        m_seats.commandsFor(m_world, sequenceIn(m_world, 0), now);
+    for (const Command& command : commands) {
+        if (const auto* removed = std::get_if<RemovePlayer>(&command.action)) {
+            m_queue.forget(removed->player);
+        }
+    }
+    // The world's own cap counts the host's commands too; theirs come first.
+    const std::uint32_t cap = m_world.info().maxCommandsPerTick;
+    const auto own = static_cast<std::uint32_t>(commands.size());
+    const std::uint32_t room = std::min(m_limits.commandsPerFrame, cap > own ? cap - own : 0);
+    std::vector<Command> queued = m_queue.take(tick(), m_limits.perPlayerPerFrame, room);
+    commands.insert(commands.end(), std::make_move_iterator(queued.begin()),
+                    std::make_move_iterator(queued.end()));
+    sortByKey(commands);
+    return commands;
+}
+
+void Session::committed(std::uint64_t below) {
+    m_committed = std::max(m_committed, std::min(below, tick()));
+    m_seats.committed(m_committed);
+}
+
+void Session::fail(std::string sentence) {
+    if (!m_failure) m_failure = std::move(sentence);
+}
+
+ClosedTick Session::finalRecord() const {
+    ClosedTick out;
+    const SharedSnapshot newest = m_keyframes.newest();
+    out.snapshot = newest && newest->tick == tick() ? newest : takeSnapshot(m_world);
+    out.entries.push_back({m_epoch, protocol::Checkpoint{tick(), m_world.fullRoot()}});
+    out.commits = tick();
+    return out;
+}
+
+CommandQueue::Admission Session::queue(PlayerId player, Command command) {
+    command.author = player;
+    return m_queue.push(std::move(command), tick() + m_limits.inputDelay,
+                        sequenceIn(m_world, player));
+}
+
+std::uint64_t Session::lastSequence(PlayerId player) const {
+    return std::max(sequenceIn(m_world, player), m_queue.lastQueued(player));
+}
+
+std::optional<std::uint64_t> Session::rootAt(std::uint64_t at) const {
+    if (at == tick()) return m_world.motionRoot();
+    if (const protocol::Frame* frame = m_frames.find(at)) return frame->previousRoot;
+    return std::nullopt;
+}
+
+SharedSnapshot Session::snapshotForJoin() {
+    const SharedSnapshot keyframe = m_keyframes.newest();
+    for (const SharedSnapshot& candidate : {m_fresh, keyframe}) {
+        if (!candidate || candidate->tick + m_limits.freshTicks < tick()) continue;
+        if (candidate->tick == tick() || m_frames.find(candidate->tick)) return candidate;
+    }
+    m_fresh = takeSnapshot(m_world);
+    return m_fresh;
+}
+
+void Session::noteDefinitions() {
+    const WorldInfo& info = m_world.info();
+    // Ids are never reused, so counters and counts together change with every coming and going.
+    const std::array<std::uint64_t, 4> mark{info.nextBody, info.nextShape, m_world.bodies().size(),
+                                            m_world.shapes().size()};
+    if (mark == m_definitionMark) return;
+    m_definitionMark = mark;
+    ++m_definitions;
+}
+
+}  // namespace huestep::server

@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <vector>
+
+#include "protocol/codec.h"
+#include "server/session.h"
+
+namespace huestep::server {
+
+namespace {
+
+constexpr std::uint8_t asleepFlag = 1;
+constexpr int typeShift = 1;
+constexpr std::uint8_t playersFlag = 8;
+
+/// A view holds at most so many bodies, shapes and contacts: what is beyond is not drawn.
+constexpr std::size_t maxDrawn = 32'768;
+
+std::uint8_t flagsOf(const BodyInfo& body, const BodyMotion& motion, bool players) {
+    unsigned flags = static_cast<unsigned>(body.type()) << typeShift;
+    if (motion.asleep()) flags |= asleepFlag;
+    if (players) flags |= playersFlag;
+    return static_cast<std::uint8_t>(flags);
+}
+
+void addShapes(const World& world, protocol::View& view) {
+    for (const ShapeInfo& shape : world.shapes()) {
+        const std::optional<std::uint32_t> place = world.find(shape.body);
+        if (!place || *place >= view.poses.size()) continue;
+        if (view.shapes.size() == maxDrawn) return;
+        protocol::View::Shape drawn;
+        drawn.body = *place;
+        drawn.kind = shape.shapeKind();
+        drawn.radius = shape.radius;
+        drawn.vertices.assign(shape.vertices.begin(),
+                              shape.vertices.begin() + shape.vertexCount());
+        view.shapes.push_back(std::move(drawn));
+    }
+}
+
+void addContacts(const World& world, protocol::View& view) {
+    for (const ContactView& contact : world.contactViews()) {
+        if (contact.colour < 0) continue;  // asleep
+        for (int i = 0; i < contact.pointCount; ++i) {
+            if (view.contacts.size() == maxDrawn) return;
+            view.contacts.push_back({contact.point[static_cast<std::size_t>(i)],
+                                     static_cast<std::uint8_t>(std::min(contact.colour, 255))});
+        }
+    }
+}
+
+}  // namespace
+
+protocol::View Session::view(bool withShapes) const {
+    protocol::View view;
+    view.tick = m_world.tick();
+    view.root = m_world.motionRoot();
+    view.players = static_cast<std::uint32_t>(m_seats.connected());
+    view.definitions = m_definitions;
+
+    std::vector<BodyId> owned;
+    for (const PlayerRecord& player : m_world.players()) {
+        if (player.id != 0 && player.body != 0) owned.push_back(player.body);
+    }
+    const auto bodies = m_world.bodies();
+    const auto motions = m_world.motions();
+    const std::size_t drawn = std::min(bodies.size(), maxDrawn);
+    view.poses.reserve(drawn);
+    view.flags.reserve(drawn);
+    for (std::size_t i = 0; i < drawn; ++i) {
+        const bool players =
+            bodies[i].owner != 0 || std::find(owned.begin(), owned.end(), bodies[i].id) != owned.end();
+        view.poses.push_back(motions[i].pose());
+        view.flags.push_back(flagsOf(bodies[i], motions[i], players));
+        if (withShapes) view.bodies.push_back(bodies[i].id);
+    }
+    if (withShapes) addShapes(m_world, view);
+    addContacts(m_world, view);
+    return view;
+}
+
+}  // namespace huestep::server
