@@ -242,8 +242,12 @@ bool Checker::body(const Place& place, const BodyDef& body) {
 }
 
 bool Checker::spring(const Place& place, const SpringDef& spring) {
-    return within(place.at("hertz"), spring.hertz, 0.0f, 1000.0f) &&
-           within(place.at("dampingRatio"), spring.dampingRatio, 0.0f, 1000.0f);
+    if (!within(place.at("hertz"), spring.hertz, 0.0f, 1000.0f) ||
+        !within(place.at("dampingRatio"), spring.dampingRatio, 0.0f, 1000.0f)) {
+        return false;
+    }
+    return !spring.enabled || spring.hertz > 0.0f ||
+           fail(place.at("hertz"), "must be above 0 where the spring is enabled");
 }
 
 bool Checker::limit(const Place& place, const JointDef& joint) {
@@ -280,6 +284,7 @@ bool Checker::joint(const Place& place, const JointDef& joint, std::size_t bodyC
         return fail(place.at("bodyB"), "is body A: a joint needs two bodies");
     }
     if (mouse && joint.motor.enabled) return fail(place.at("motor"), "a mouse joint has none");
+    if (mouse && !joint.spring.enabled) return fail(place.at("spring"), "a mouse joint needs one");
     if (!within(place.at("anchorA"), joint.anchorA, maxCoordinate) ||
         !within(place.at("anchorB"), joint.anchorB, maxCoordinate) ||
         !unit(place.at("reference"), joint.reference) ||

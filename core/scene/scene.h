@@ -111,7 +111,7 @@ enum class JointKind : std::uint8_t {
 /// A soft part: a damped harmonic oscillator of the row's effective mass.
 struct SpringDef {
     bool enabled = false;
-    float hertz = 0.0f;         ///< Hz, [0, 1000]
+    float hertz = 0.0f;         ///< Hz, [0, 1000]; above 0 if enabled
     float dampingRatio = 0.0f;  ///< 1 is critical, [0, 1000]
     friend bool operator==(const SpringDef&, const SpringDef&) = default;
 };
@@ -133,8 +133,8 @@ struct MotorDef {
 };
 
 /// A joint between two bodies of the same list (a scene's, or a spawn's), given by their places.
-/// Two bodies that nothing can push may be joined; the joint then does nothing. A mouse joint has
-/// neither limit nor motor, and its body A means nothing (it may be body B).
+/// Two bodies that nothing can push may be joined; the joint then does nothing. A mouse joint has a
+/// spring, neither limit nor motor, and its body A means nothing (it may be body B).
 struct JointDef {
     JointId id = 0;  ///< as BodyDef::id
     JointKind kind = JointKind::Revolute;

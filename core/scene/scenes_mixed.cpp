@@ -166,10 +166,7 @@ void addDistancesAndHand(Scene& scene) {
         const std::uint32_t place = add(scene, bob);
         JointDef rod = rodBetween(scene, beam, {x, -0.1f}, place, {0.0f, 0.2f});
         if (i == 1) rod.spring = {true, 2.0f, 0.2f};
-        if (i == 2) {
-            rod.spring = {true, 0.0f, 0.0f};
-            rod.limit = {true, 0.2f, 1.9f};
-        }
+        if (i == 2) rod.limit = {true, 0.2f, 1.9f};
         if (i == 3) {
             rod.spring = {true, 1.0f, 0.1f};
             rod.limit = {true, 0.5f, 2.5f};
