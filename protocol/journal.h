@@ -24,13 +24,13 @@ namespace huestep::protocol {
 /// The few things a journal needs of a file system, in one folder. Names are plain file names.
 /// Every call may fail with a sentence that names the file.
 class LogStore {
-   public:
+ public:
     virtual ~LogStore() = default;
     virtual Result<std::vector<std::string>> list() = 0;  ///< sorted
     virtual Result<std::vector<std::byte>> read(const std::string& name) = 0;
-    virtual Status create(const std::string& name) = 0;   ///< empty; fails if there; folder synced
+    virtual Status create(const std::string& name) = 0;  ///< empty; fails if there; folder synced
     virtual Status append(const std::string& name, std::span<const std::byte> bytes) = 0;
-    virtual Status sync(const std::string& name) = 0;     ///< data is on disk on return
+    virtual Status sync(const std::string& name) = 0;  ///< data is on disk on return
     virtual Status truncate(const std::string& name, std::uint64_t size) = 0;
     /// Temporary file, sync, rename, sync of the folder: all or nothing.
     virtual Status replace(const std::string& name, std::span<const std::byte> bytes) = 0;
@@ -56,8 +56,8 @@ struct JournalEntry {
 
 /// What reading a journal from its start found.
 struct JournalContents {
-    JournalIdentity identity;            ///< of the newest segment
-    std::vector<JournalEntry> entries;   ///< in order
+    JournalIdentity identity;           ///< of the newest segment
+    std::vector<JournalEntry> entries;  ///< in order
     /// Bytes after the last whole record of the newest segment that do not form one: a torn tail.
     std::uint64_t tornBytes = 0;
     std::string tornFile;
@@ -75,7 +75,7 @@ Result<std::vector<std::byte>> readSnapshot(LogStore& store, std::uint64_t tick)
 /// Appends to a journal. Not for the loop's thread: calls block on the disk. After the first
 /// failure of a sync the writer stays failed for good: what the disk holds is unknown.
 class JournalWriter {
-   public:
+ public:
     /// Continues the journal after `contents` (cutting off a torn tail), in a new segment.
     static Result<JournalWriter> open(LogStore& store, JournalIdentity identity,
                                       const JournalContents& contents, std::uint64_t nextTick);
@@ -89,7 +89,7 @@ class JournalWriter {
     /// Starts a new segment at this tick.
     Status roll(std::uint64_t tick);
 
-   private:
+ private:
     JournalWriter(LogStore& store, JournalIdentity identity);
     LogStore* m_store;
     JournalIdentity m_identity;

@@ -48,9 +48,9 @@ struct Hello {
 /// Server → client: the connection may play.
 struct Welcome {
     std::string session;
-    PlayerId player = 0;          ///< 0 for a spectator
-    std::uint32_t epoch = 0;      ///< counts the server's starts of this session
-    std::uint64_t tick = 0;       ///< the next tick the server will close
+    PlayerId player = 0;      ///< 0 for a spectator
+    std::uint32_t epoch = 0;  ///< counts the server's starts of this session
+    std::uint64_t tick = 0;   ///< the next tick the server will close
     float ticksPerSecond = 60.0f;
     std::uint32_t inputDelay = 0;  ///< ticks between an intent's arrival and its earliest tick
     std::uint32_t maxCommandsPerIntent = 16;
@@ -75,8 +75,8 @@ struct Intent {
 
 /// Server → client: everything that decides one step. Also the record of the journal.
 struct Frame {
-    std::uint64_t tick = 0;         ///< this frame leads from `tick` to `tick + 1` steps taken
-    std::vector<Command> commands;  ///< in key order
+    std::uint64_t tick = 0;             ///< this frame leads from `tick` to `tick + 1` steps taken
+    std::vector<Command> commands;      ///< in key order
     std::vector<PlayerId> substituted;  ///< players whose input came too late for this tick
     std::uint64_t previousRoot = 0;     ///< motion root of the world this frame is applied to
     std::uint64_t committed = 0;        ///< frames below this tick are on disk
@@ -125,9 +125,9 @@ struct DesyncReport {
     std::uint64_t mine = 0;
     std::uint64_t yours = 0;
     BodyId body = 0;
-    std::string field;   ///< "velocity.x"
-    std::string here;    ///< the client's value
-    std::string there;   ///< the server's
+    std::string field;  ///< "velocity.x"
+    std::string here;   ///< the client's value
+    std::string there;  ///< the server's
     friend bool operator==(const DesyncReport&, const DesyncReport&) = default;
 };
 
@@ -157,7 +157,7 @@ enum class ByeReason : std::uint16_t {
 /// Either way: the connection ends.
 struct Bye {
     ByeReason reason = ByeReason::Done;
-    std::string text;             ///< a sentence for a person, at most 256 bytes
+    std::string text;  ///< a sentence for a person, at most 256 bytes
     bool mayResume = false;
     friend bool operator==(const Bye&, const Bye&) = default;
 };
@@ -181,15 +181,15 @@ struct View {
     std::uint32_t players = 0;
     std::uint32_t definitions = 0;  ///< rises when `shapes` changed; shapes are sent only then
     std::vector<Shape> shapes;
-    std::vector<BodyId> bodies;    ///< with `shapes`
-    std::vector<Pose> poses;       ///< of centres of mass
+    std::vector<BodyId> bodies;       ///< with `shapes`
+    std::vector<Pose> poses;          ///< of centres of mass
     std::vector<std::uint8_t> flags;  ///< a body: bit 0 asleep, bits 1–2 type, bit 3 a player's
     std::vector<Contact> contacts;
     friend bool operator==(const View&, const View&) = default;
 };
 
-using Message = std::variant<Hello, Welcome, Intent, Frame, SnapshotBegin, SnapshotChunk,
-                             SnapshotEnd, SnapshotRequest, HashQuery, HashNodes, DesyncReport, Ping,
-                             Bye, View>;
+using Message =
+    std::variant<Hello, Welcome, Intent, Frame, SnapshotBegin, SnapshotChunk, SnapshotEnd,
+                 SnapshotRequest, HashQuery, HashNodes, DesyncReport, Ping, Bye, View>;
 
 }  // namespace huestep::protocol

@@ -19,7 +19,7 @@ inline constexpr std::size_t maxSceneFileBytes = 64u << 20;
 /// value out of range is refused with its path (`bodies[3].shapes[0].vertices[2].x`).
 Result<Scene> readScene(std::span<const std::byte> bytes);
 
-std::string writeSceneJson(const Scene& scene);              ///< stable order, reads back equal
+std::string writeSceneJson(const Scene& scene);  ///< stable order, reads back equal
 std::vector<std::byte> writeSceneBinary(const Scene& scene);
 
 }  // namespace huestep::protocol

@@ -1,0 +1,35 @@
+#include "protocol/fingerprint.h"
+
+#include <span>
+#include <string>
+
+#include "core/state/hash.h"
+#include "protocol/scene_file.h"
+#include "protocol/schema_text.h"
+
+namespace huestep::protocol {
+
+std::uint64_t schemaHash(std::string_view text) {
+    // No string of our schemas holds a '#', so every one starts a comment.
+    std::string kept;
+    bool comment = false;
+    for (const char c : text) {
+        if (c == '#') comment = true;
+        if (c == '\n') comment = false;
+        if (comment) continue;
+        const bool space = c == ' ' || c == '\n' || c == '\t' || c == '\r';
+        if (!space) {
+            kept += c;
+        } else if (!kept.empty() && kept.back() != ' ') {
+            kept += ' ';
+        }
+    }
+    return hash64(std::as_bytes(std::span(kept.data(), kept.size())));
+}
+
+Fingerprint buildFingerprint() {
+    static const std::uint64_t hash = schemaHash(std::string(sceneSchemaText) + messagesSchemaText);
+    return {0, hash, sceneVersion};
+}
+
+}  // namespace huestep::protocol

@@ -1,0 +1,219 @@
+/// Reading hostile Cap'n Proto messages: where we are, what is allowed, how a refusal is said.
+///
+/// Inside this folder a refusal is an exception, as Cap'n Proto's own refusals are; both are caught
+/// in `readMessage`, the one border, and never leave it. That keeps the field-by-field code free of
+/// a branch after every line.
+#pragma once
+
+#include <capnp/message.h>
+#include <capnp/schema.h>
+#include <kj/exception.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "core/result.h"
+
+namespace huestep::protocol::wire {
+
+/// Thrown by `Reading::refuse` and caught by `readMessage`.
+struct Refused {
+    std::string reason;
+};
+
+/// Pointers from the root to the deepest field: Frame, list, command, spawn, list, body, list,
+/// shape, list, vertex. Eight would do if a spawn's lists stood in the command and a vertex were
+/// two numbers of a flat list; names that people know from scene files are worth two levels, and
+/// no schema here is recursive, so the schema itself bounds the depth that our code ever walks.
+inline constexpr int nestingLimit = 10;
+
+/// Words of a struct without what it points to.
+template <class Schema>
+std::size_t structWords() {
+    static const std::size_t words = [] {
+        const auto layout = ::capnp::Schema::from<Schema>().getProto().getStruct();
+        return std::size_t{layout.getDataWordCount()} + layout.getPointerCount();
+    }();
+    return words;
+}
+
+template <class Schema>
+std::size_t structBytes() {
+    return 8 * structWords<Schema>();
+}
+
+/// Words of a list of structs: a tag, then the structs.
+template <class Schema>
+std::size_t structListWords(std::size_t count) {
+    return count == 0 ? 0 : 1 + count * structWords<Schema>();
+}
+inline std::size_t byteWords(std::size_t bytes) {
+    return (bytes + 7) / 8;
+}
+/// A text has a zero byte at its end; an empty one is not written.
+inline std::size_t textWords(std::string_view text) {
+    return text.empty() ? 0 : byteWords(text.size() + 1);
+}
+
+/// The place in a message being read, and what may still be made of it.
+class Reading {
+ public:
+    /// `name`: in front of every sentence; may be empty. `words`: size of the message.
+    Reading(std::string_view name, std::size_t words) : m_name(name), m_budget(4 * words) {}
+
+    /// Does `f` inside a field. The step is left on a normal return only, so that after an
+    /// exception `where` still tells how far we had come.
+    template <class F>
+    decltype(auto) at(const char* field, F&& f) {
+        return at(field, noIndex, static_cast<F&&>(f));
+    }
+    template <class F>
+    decltype(auto) at(const char* field, std::size_t index, F&& f) {
+        if (m_depth < m_steps.size()) m_steps[m_depth] = {field, index};
+        ++m_depth;
+        if constexpr (std::is_void_v<decltype(f())>) {
+            f();
+            --m_depth;
+        } else {
+            auto result = f();
+            --m_depth;
+            return result;
+        }
+    }
+
+    /// "Frame.commands[3].action"
+    [[nodiscard]] std::string where() const;
+    [[noreturn]] void refuse(std::string reason) const;
+
+    /// Counts what is made of the message, in words of its own layout. Lists may overlap in a
+    /// hostile message and their structs may be cut short, so that few bytes become many values;
+    /// this holds memory to a small multiple of the bytes received.
+    void spend(std::size_t words) {
+        if (words > m_budget) refuse("more values than the message has bytes for");
+        m_budget -= words;
+    }
+
+    /// The number, which must be finite.
+    float real(const char* field, float value) {
+        if (!std::isfinite(value)) at(field, [&] { refuse("not a finite number"); });
+        return value;
+    }
+
+    /// A group or struct with x and y, or with c and s.
+    template <class Pair>
+    Vec2 point(const char* field, Pair pair) {
+        return at(field, [&] { return Vec2{real("x", pair.getX()), real("y", pair.getY())}; });
+    }
+    template <class Pair>
+    Rotation rotation(const char* field, Pair pair) {
+        return at(field, [&] { return Rotation{real("c", pair.getC()), real("s", pair.getS())}; });
+    }
+
+    /// An enumerant, checked against the highest that is known.
+    template <class Enum, class SchemaEnum>
+    Enum choice(const char* field, SchemaEnum value, Enum last) {
+        const auto number = static_cast<std::uint16_t>(value);
+        if (number > static_cast<std::uint16_t>(last)) {
+            at(field, [&] { refuse("unknown value " + std::to_string(number)); });
+        }
+        return static_cast<Enum>(number);
+    }
+
+    /// Checks a list's size against `most` before anything is made of it, and pays for it.
+    template <class List>
+    std::size_t sizeOf(const char* field, const List& list, std::size_t most,
+                       std::size_t elementBytes) {
+        const std::size_t size = list.size();
+        at(field, [&] {
+            if (size > most) {
+                refuse(std::to_string(size) + " entries, at most " + std::to_string(most));
+            }
+            spend(byteWords(size * elementBytes));
+        });
+        return size;
+    }
+
+    /// UTF-8 text without control characters, at most `most` bytes.
+    std::string text(const char* field, std::string_view value, std::size_t most);
+
+ private:
+    struct Step {
+        const char* field = "";
+        std::size_t index = 0;
+    };
+    static constexpr std::size_t noIndex = ~std::size_t{0};
+
+    std::string_view m_name;
+    std::size_t m_budget;
+    std::array<Step, 16> m_steps{};
+    std::size_t m_depth = 0;
+};
+
+/// Whether the bytes are UTF-8 (RFC 3629) without control characters (U+0000 to U+001F, U+007F).
+bool isPlainText(std::string_view text);
+
+/// What Cap'n Proto has to say, on one line.
+std::string reasonOf(const ::kj::Exception& exception);
+
+/// Hands the root of one flat segment to `read`, with the limits that hold for every message, and
+/// turns whatever is thrown within into a sentence. `bytes` need not be aligned.
+template <class Schema, class T, class Read>
+Result<T> readMessage(std::string_view name, std::span<const std::byte> bytes, Read&& read) {
+    if (bytes.empty() || bytes.size() % 8 != 0) {
+        return Error{std::string(name) + ": " + std::to_string(bytes.size()) +
+                     " bytes are not a whole number of 8-byte words"};
+    }
+    const std::size_t words = bytes.size() / 8;
+    Reading reading(name, words);
+    try {
+        // Cap'n Proto wants words where the machine can load them. Copying is cheaper than asking
+        // every transport to align what it receives.
+        std::vector<::capnp::word> copy;
+        const void* at = bytes.data();
+        if (reinterpret_cast<std::uintptr_t>(at) % alignof(::capnp::word) != 0) {
+            copy.resize(words);
+            std::memcpy(static_cast<void*>(copy.data()), at, bytes.size());
+            at = copy.data();
+        }
+        const ::kj::ArrayPtr<const ::capnp::word> segment(static_cast<const ::capnp::word*>(at),
+                                                          words);
+        const ::kj::ArrayPtr<const ::capnp::word> segments[] = {segment};
+        ::capnp::ReaderOptions options;
+        options.traversalLimitInWords = 4 * words;
+        options.nestingLimit = nestingLimit;
+        ::capnp::SegmentArrayMessageReader message(segments, options);
+        return T(read(reading, message.template getRoot<Schema>()));
+    } catch (const Refused& refused) {
+        return Error{refused.reason};
+    } catch (const ::kj::Exception& exception) {
+        return Error{reading.where() + ": not a well-formed message (" + reasonOf(exception) + ")"};
+    } catch (const std::exception& exception) {
+        return Error{reading.where() + ": cannot be read (" + exception.what() + ")"};
+    }
+}
+
+/// Builds a message of at most `words` words (root pointer included) behind `before` bytes that are
+/// left zero for a header. The result has no byte more than the message needs.
+template <class Schema, class Write>
+std::vector<std::byte> writeMessage(std::size_t before, std::size_t words, Write&& write) {
+    static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 8);
+    std::vector<std::byte> bytes(before + 8 * words);
+    // The exact builder writes into the final buffer; the usual one would copy, and would wipe our
+    // buffer when it is done.
+    ::capnp::FlatMessageBuilder message(::kj::ArrayPtr<::capnp::word>(
+        reinterpret_cast<::capnp::word*>(bytes.data() + before), words));
+    write(message.template initRoot<Schema>());
+    bytes.resize(before + 8 * message.getSegmentsForOutput()[0].size());
+    return bytes;
+}
+
+}  // namespace huestep::protocol::wire
