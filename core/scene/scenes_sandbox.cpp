@@ -21,7 +21,7 @@ std::uint32_t addArena(Scene& scene) {
     return add(scene, arena);
 }
 
-/// Two ledges, a ramp, a bouncy bumper and a conveyor belt that feeds the paddle.
+/// Two ledges, a ramp, a bouncy bumper, a conveyor belt that feeds the paddle, and a windmill.
 void addPlatforms(Scene& scene) {
     add(scene, bodyOf(BodyType::Static, {-15.0f, 6.0f}, ShapeDef::box(4.0f, 0.2f, {}, {}, 0.1f)));
     add(scene, bodyOf(BodyType::Static, {15.0f, 9.0f}, ShapeDef::box(4.0f, 0.2f, {}, {}, 0.1f)));
@@ -30,11 +30,18 @@ void addPlatforms(Scene& scene) {
     BodyDef bumper = bodyOf(BodyType::Static, {0.0f, 8.5f}, ShapeDef::circle({}, 0.8f));
     bumper.shapes[0].material.restitution = 1.0f;
     add(scene, bumper);
-    BodyDef belt = bodyOf(BodyType::Static, {15.0f, 0.0f},
-                          ShapeDef::capsule({-3.5f, 0.1f}, {4.0f, 0.1f}, 0.15f));
-    belt.shapes[0].material.tangentSpeed = 2.0f;
+    BodyDef belt = bodyOf(BodyType::Static, {15.5f, 0.0f},
+                          ShapeDef::capsule({-2.5f, 0.1f}, {4.0f, 0.1f}, 0.15f));
+    belt.shapes[0].material.tangentSpeed = -2.0f;
     belt.shapes[0].material.friction = 0.9f;
     add(scene, belt);
+    BodyDef windmill;
+    windmill.type = BodyType::Kinematic;
+    windmill.position = {9.5f, 13.5f};
+    windmill.angularVelocity = -0.8f;
+    windmill.shapes = {ShapeDef::box(2.0f, 0.1f, {}, {}, 0.05f),
+                       ShapeDef::box(0.1f, 2.0f, {}, {}, 0.05f)};
+    add(scene, windmill);
 }
 
 void addSeeSaw(Scene& scene, std::uint32_t arena, Vec2 pivot) {
@@ -164,7 +171,7 @@ Scene sandbox(Values) {
     const std::uint32_t arena = addArena(scene);
     addPlatforms(scene);
     addSeeSaw(scene, arena, {-8.5f, 1.0f});
-    addPaddle(scene, arena, {9.0f, 5.5f});
+    addPaddle(scene, arena, {10.9f, 2.75f});
     addRope(scene, arena, {4.0f, 18.0f});
     addSwing(scene, arena, {-12.5f, 16.0f});
     addPiles(scene);
