@@ -16,12 +16,12 @@ namespace huestep::client {
 struct Situation {
     const World& world;
     PlayerId player = 0;
-    BodyId body = 0;            ///< of the player; 0: it has none
-    std::uint64_t played = 0;   ///< ticks since this client began to play
+    BodyId body = 0;           ///< of the player; 0: it has none
+    std::uint64_t played = 0;  ///< ticks since this client began to play
 };
 
 class Bot {
-   public:
+ public:
     virtual ~Bot() = default;
     /// What to do now; mostly nothing.
     virtual std::vector<Action> act(const Situation& now) = 0;
@@ -38,8 +38,8 @@ std::unique_ptr<Bot> makeWanderBot(std::uint64_t seed);
 struct ScriptLine {
     std::uint64_t tick = 0;  ///< ticks since this client began to play
     Action action;
-    bool onSelf = false;     ///< the action's body is the player's own
-    bool atCenter = false;   ///< the action's point is the body's centre
+    bool onSelf = false;    ///< the action's body is the player's own
+    bool atCenter = false;  ///< the action's point is the body's centre
     bool onLastSpawn = false;
 };
 std::unique_ptr<Bot> makeScriptBot(std::vector<ScriptLine> lines);

@@ -31,9 +31,9 @@ struct PlayerConfig {
     std::string session;
     protocol::Role role = protocol::Role::Player;
     protocol::Fingerprint fingerprint;
-    std::unique_ptr<Bot> bot;       ///< none: idle
-    std::uint64_t ticks = 0;        ///< frames to follow before leaving; 0: no end
-    int threads = 1;                ///< that step this client's world
+    std::unique_ptr<Bot> bot;  ///< none: idle
+    std::uint64_t ticks = 0;   ///< frames to follow before leaving; 0: no end
+    int threads = 1;           ///< that step this client's world
     bool handleSignals = true;
     std::atomic<bool>* stop = nullptr;  ///< set it to end within 100 ms
     /// How long to try: for the first connection, and for each reconnection.

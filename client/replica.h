@@ -34,24 +34,24 @@ inline constexpr std::size_t maxPendingCommands = 1'024;
 /// Numbers of a client's life, over all its connections.
 struct Statistics {
     PlayerId player = 0;
-    std::uint64_t tick = 0;              ///< of the world now
-    std::uint64_t root = 0;              ///< its motion root
-    std::uint64_t ticks = 0;             ///< frames applied
+    std::uint64_t tick = 0;   ///< of the world now
+    std::uint64_t root = 0;   ///< its motion root
+    std::uint64_t ticks = 0;  ///< frames applied
     std::uint64_t hashesCompared = 0;
     std::uint64_t mismatches = 0;
-    std::uint64_t corrections = 0;       ///< snapshots adopted because of a mismatch
-    std::uint64_t snapshots = 0;         ///< all snapshots adopted
-    std::uint64_t connections = 0;       ///< Welcomes
-    std::uint64_t resumes = 0;           ///< of them into the old seat
-    std::uint64_t rolledBack = 0;        ///< ticks undone because the server lost them uncommitted
-    std::uint64_t committedLost = 0;     ///< committed ticks the server did not have: must be 0
+    std::uint64_t corrections = 0;    ///< snapshots adopted because of a mismatch
+    std::uint64_t snapshots = 0;      ///< all snapshots adopted
+    std::uint64_t connections = 0;    ///< Welcomes
+    std::uint64_t resumes = 0;        ///< of them into the old seat
+    std::uint64_t rolledBack = 0;     ///< ticks undone because the server lost them uncommitted
+    std::uint64_t committedLost = 0;  ///< committed ticks the server did not have: must be 0
     std::uint64_t commandsSent = 0;
     std::uint64_t commandsResent = 0;
     std::uint64_t commandsSeen = 0;      ///< own commands found in frames
     std::uint64_t commandsRejected = 0;  ///< of them rejected by the world
     std::uint64_t bytesIn = 0;           ///< set by the connection
     std::uint64_t bytesOut = 0;
-    double latencyMedian = 0.0;          ///< s, from own command to the frame that has it
+    double latencyMedian = 0.0;  ///< s, from own command to the frame that has it
     double latencyP99 = 0.0;
     std::optional<protocol::DesyncReport> lastDesync;
 };
@@ -65,7 +65,7 @@ struct ReplicaConfig {
 };
 
 class Replica {
-   public:
+ public:
     explicit Replica(ReplicaConfig config);
 
     /// A connection is up: sends Hello. The world and the seat of an earlier one are kept.
@@ -93,9 +93,12 @@ class Replica {
     [[nodiscard]] std::uint64_t committed() const { return m_committed; }
     [[nodiscard]] float ticksPerSecond() const { return m_ticksPerSecond; }
     [[nodiscard]] const std::optional<protocol::Bye>& bye() const { return m_bye; }
+    /// The counts, without tick, root and latencies: cheap.
+    [[nodiscard]] const Statistics& counts() const { return m_statistics; }
+    /// All of it.
     [[nodiscard]] Statistics statistics() const;
 
-   private:
+ private:
     enum class State : std::uint8_t {
         Apart,     ///< no connection
         Greeting,  ///< Hello sent
@@ -140,14 +143,14 @@ class Replica {
     std::optional<protocol::ResumeToken> m_token;
     std::optional<protocol::Bye> m_bye;
     std::vector<protocol::Message> m_outgoing;
-    std::deque<Pending> m_pending;      ///< own commands, sequences rising
-    std::vector<Command> m_unsent;      ///< those for the next Intent
+    std::deque<Pending> m_pending;  ///< own commands, sequences rising
+    std::vector<Command> m_unsent;  ///< those for the next Intent
     std::uint64_t m_nextSequence = 1;
-    std::uint64_t m_committed = 0;      ///< frames below are on the server's disk
+    std::uint64_t m_committed = 0;  ///< frames below are on the server's disk
     std::uint64_t m_lastCheckpoint = 0;
     std::uint32_t m_maxCommandsPerIntent = 16;
     float m_ticksPerSecond = 60.0f;
-    std::vector<double> m_latencies;    ///< s, the newest 4,096
+    std::vector<double> m_latencies;  ///< s, the newest 4,096
     std::size_t m_latencyAt = 0;
     Statistics m_statistics;
 };

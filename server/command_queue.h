@@ -1,4 +1,4 @@
-/// Commands that wait for their frame: bounded for each player and in total.
+/// Commands that wait for their frame: bounded for each player and in total, by number and bytes.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "core/world/command.h"
+#include "server/limits.h"
 
 namespace huestep::server {
 
 class CommandQueue {
-   public:
+ public:
     enum class Admission : std::uint8_t {
         Queued,
         Old,         ///< its sequence is not above the last one queued: a repetition, let go
@@ -20,31 +21,39 @@ class CommandQueue {
         QueueFull    ///< the whole queue is
     };
 
-    CommandQueue(std::uint32_t perPlayer, std::uint32_t total)
-        : m_perPlayer(perPlayer), m_total(total) {}
+    explicit CommandQueue(const Limits& limits) : m_limits(limits) {}
 
     /// Takes a command for a frame of `earliest` or later. `lastSequence` is that of the author's
     /// last command in the world; a queued one raises it.
     Admission push(Command command, std::uint64_t earliest, std::uint64_t lastSequence);
 
-    /// Takes out what is due at `tick`, at most `perPlayer` of each and `total` of all; which
-    /// player is served first goes round with the tick, so that none starves.
-    std::vector<Command> take(std::uint64_t tick, std::uint32_t perPlayer, std::uint32_t total);
+    /// Takes out what is due at `tick`: at most `most` commands and `commandBytes` bytes of all,
+    /// and each player's share. Who is served first goes round with the tick: none starves.
+    std::vector<Command> take(std::uint64_t tick, std::uint32_t most);
 
     /// Sequence of the author's last command that waits; 0: none.
     [[nodiscard]] std::uint64_t lastQueued(PlayerId player) const;
     void forget(PlayerId player);
     [[nodiscard]] std::size_t size() const { return m_size; }
+    [[nodiscard]] std::size_t bytes() const { return m_bytes; }
 
-   private:
+ private:
     struct Waiting {
         Command command;
         std::uint64_t earliest = 0;
+        std::size_t bytes = 0;
     };
-    std::uint32_t m_perPlayer;
-    std::uint32_t m_total;
+    struct Line {
+        std::deque<Waiting> commands;  ///< sequences rise
+        std::size_t bytes = 0;
+    };
+    void takeFrom(Line& line, std::uint64_t tick, std::uint32_t most, std::size_t& room,
+                  std::vector<Command>& out);
+
+    Limits m_limits;
     std::size_t m_size = 0;
-    std::map<PlayerId, std::deque<Waiting>> m_waiting;  ///< by player; sequences rise
+    std::size_t m_bytes = 0;
+    std::map<PlayerId, Line> m_lines;
 };
 
 }  // namespace huestep::server

@@ -141,7 +141,7 @@ void Connection::startFeed(const protocol::Hello& hello, Instant now) {
     m_resynced = true;
     const std::uint64_t have = hello.haveTick;
     const bool here = have != 0 && m_session->rootAt(have) == hello.haveHash;
-    if (!here) return startSnapshot(m_session->snapshotForJoin(), now);
+    if (!here) return startSnapshot(m_session->snapshotForJoin(have), now);
     m_feed = Feed::Frames;
     m_cursor = have;
 }
@@ -160,9 +160,15 @@ void Connection::on(protocol::Intent& intent, Instant now) {
     }
     for (Command& command : intent.commands) {
         switch (m_session->queue(m_player, std::move(command))) {
-            case CommandQueue::Admission::Queued: ++m_context.counters.commandsQueued; break;
-            case CommandQueue::Admission::Old: ++m_context.counters.commandsOld; break;
-            case CommandQueue::Admission::QueueFull: ++m_context.counters.commandsDropped; break;
+            case CommandQueue::Admission::Queued:
+                ++m_context.counters.commandsQueued;
+                break;
+            case CommandQueue::Admission::Old:
+                ++m_context.counters.commandsOld;
+                break;
+            case CommandQueue::Admission::QueueFull:
+                ++m_context.counters.commandsDropped;
+                break;
             case CommandQueue::Admission::PlayerFull:
                 return end(ByeReason::TooFast, "too many commands wait for their tick", true, now);
         }
@@ -175,8 +181,11 @@ void Connection::checkCheckpoint(const protocol::Checkpoint& checkpoint) {
     ++m_context.counters.checkpointsChecked;
     if (*mine == checkpoint.motionRoot) return;
     ++m_context.counters.checkpointMismatches;
-    line("checkpoint_mismatch").with("tick", checkpoint.tick).hex("client", checkpoint.motionRoot)
-        .hex("server", *mine).to(m_context.log, Severity::Warning);
+    line("checkpoint_mismatch")
+        .with("tick", checkpoint.tick)
+        .hex("client", checkpoint.motionRoot)
+        .hex("server", *mine)
+        .to(m_context.log, Severity::Warning);
 }
 
 bool Connection::mayCost(Instant now) {
@@ -206,9 +215,14 @@ void Connection::on(const protocol::HashQuery& query, Instant now) {
 void Connection::on(const protocol::DesyncReport& report, Instant now) {
     if (!mayCost(now)) return;
     ++m_context.counters.desyncReports;
-    line("desync").with("tick", report.tick).with("body", report.body).with("field", report.field)
-        .with("client_value", report.here).with("server_value", report.there)
-        .hex("client", report.mine).hex("server", report.yours)
+    line("desync")
+        .with("tick", report.tick)
+        .with("body", report.body)
+        .with("field", report.field)
+        .with("client_value", report.here)
+        .with("server_value", report.there)
+        .hex("client", report.mine)
+        .hex("server", report.yours)
         .to(m_context.log, Severity::Warning);
 }
 
@@ -282,7 +296,7 @@ void Connection::checkPace(Instant now) {
         m_resynced = true;
         ++m_context.counters.resyncs;
         line("resync").with("behind_ticks", m_session->tick() - m_cursor).to(m_context.log);
-        return startSnapshot(m_session->snapshotForJoin(), now);
+        return startSnapshot(m_session->snapshotForJoin(m_cursor), now);
     }
     if (now > m_behindSince + limits.dropBehind) {
         ++m_context.counters.tooSlow;
@@ -314,7 +328,7 @@ void Connection::answerQueries(Instant now) {
     const Rebuilder::Answer answer = rebuilder.ask(m_exactTick);
     if (answer == Rebuilder::Answer::Coming && now <= m_exactSince + rebuildPatience) return;
     const World* world = rebuilder.find(m_exactTick);
-    startSnapshot(world ? takeSnapshot(*world) : m_session->snapshotForJoin(), now);
+    startSnapshot(world ? takeSnapshot(*world) : m_session->snapshotForJoin(m_exactTick), now);
 }
 
 // Output -----------------------------------------------------------------------------------------
@@ -397,19 +411,23 @@ SharedBytes Connection::nextFrame(Instant now) {
         end(ByeReason::TooSlow, "the frames it needs are gone", true, now);
     } else {
         ++m_context.counters.resyncs;
-        startSnapshot(m_session->snapshotForJoin(), now);
+        startSnapshot(m_session->snapshotForJoin(m_cursor), now);
     }
     return nullptr;
 }
 
 // The end ----------------------------------------------------------------------------------------
 
-bool Connection::finished() const { return m_phase == Phase::Ending && m_outbox.empty(); }
+bool Connection::finished() const {
+    return m_phase == Phase::Ending && m_outbox.empty();
+}
 
 void Connection::end(ByeReason reason, std::string text, bool mayResume, Instant now) {
     if (m_phase == Phase::Ending) return;
     if (reason == ByeReason::TooFast) ++m_context.counters.tooFast;
-    line("bye").with("reason", static_cast<std::uint64_t>(reason)).with("text", text)
+    line("bye")
+        .with("reason", static_cast<std::uint64_t>(reason))
+        .with("text", text)
         .to(m_context.log, reason == ByeReason::ServerStops ? Severity::Info : Severity::Warning);
     if (text.size() > 256) text.resize(256);
     // Whatever was to be said before is moot; the Bye alone goes out.

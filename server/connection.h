@@ -64,7 +64,7 @@ struct ConnectionContext {
 };
 
 class Connection {
-   public:
+ public:
     Connection(ConnectionId id, std::string peer, ConnectionContext& context, Instant now);
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -82,7 +82,7 @@ class Connection {
     void advance(Instant now);
     /// The next bytes to write, or null. `unsent`: what the transport still holds.
     SharedBytes next(std::size_t unsent, Instant now);
-    /// Nothing more comes: close once the transport has sent what it holds, or at `closeBy`.
+    /// Nothing more comes. The transport closes once the client does, or at `closeBy`.
     [[nodiscard]] bool finished() const;
     [[nodiscard]] Instant closeBy() const { return m_closeBy; }
 
@@ -93,7 +93,7 @@ class Connection {
     /// The seat belongs to another connection now.
     void loseSeat(Instant now);
 
-   private:
+ private:
     enum class Phase : std::uint8_t { Greeting, Joining, Live, Ending };
     /// What a live client gets besides answers.
     enum class Feed : std::uint8_t {
@@ -155,8 +155,8 @@ class Connection {
     Instant m_drained;           ///< when the transport last took or sent something
     std::size_t m_lastUnsent = 0;
     Instant m_pinged = 0;
-    Instant m_behindSince = 0;   ///< 0: up to date
-    bool m_resynced = false;     ///< since it fell behind
+    Instant m_behindSince = 0;  ///< 0: up to date
+    bool m_resynced = false;    ///< since it fell behind
     Instant m_closeBy = ~Instant{0};
     TokenBucket m_messages;
     TokenBucket m_heavy;

@@ -70,8 +70,8 @@ Rebuilder::Answer Rebuilder::ask(std::uint64_t tick) {
         if (job.tick == tick) return Answer::Coming;
     }
     const SharedSnapshot base = m_keyframes.before(tick);
-    const bool reachable = base && (base->tick == tick || (m_frames.find(base->tick) &&
-                                                           m_frames.find(tick - 1)));
+    const bool reachable =
+        base && (base->tick == tick || (m_frames.find(base->tick) && m_frames.find(tick - 1)));
     if (!reachable || m_waiting.size() >= m_mostWaiting) return Answer::Gone;
     m_waiting.push_back({tick, std::nullopt});
     return Answer::Coming;

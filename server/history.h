@@ -28,7 +28,7 @@ SharedSnapshot takeSnapshot(const World& world);
 
 /// The newest frames of a session, without a gap, the newest leading to the session's tick.
 class FrameRing {
-   public:
+ public:
     FrameRing(std::uint32_t most, std::size_t mostBytes) : m_most(most), m_mostBytes(mostBytes) {}
 
     /// The next frame: its tick follows the newest one's.
@@ -42,7 +42,7 @@ class FrameRing {
     [[nodiscard]] std::size_t bytes() const { return m_bytes; }
     [[nodiscard]] std::size_t size() const { return m_entries.size(); }
 
-   private:
+ private:
     struct Entry {
         protocol::Frame frame;
         SharedBytes encoded;
@@ -57,14 +57,14 @@ class FrameRing {
 
 /// Snapshots at intervals, from which a tick in between is a few steps away.
 class Keyframes {
-   public:
+ public:
     explicit Keyframes(std::uint32_t most) : m_most(most) {}
     void push(SharedSnapshot snapshot);
     /// The newest at or before the tick; null: none.
     [[nodiscard]] SharedSnapshot before(std::uint64_t tick) const;
     [[nodiscard]] SharedSnapshot newest() const;
 
-   private:
+ private:
     std::uint32_t m_most;
     std::deque<SharedSnapshot> m_snapshots;
 };
@@ -73,7 +73,7 @@ class Keyframes {
 /// so that the session's own ticks never wait for it. Used when a client's world differs: both
 /// ends then compare worlds of the very same tick.
 class Rebuilder {
-   public:
+ public:
     Rebuilder(const FrameRing& frames, const Keyframes& keyframes, std::uint32_t mostWaiting)
         : m_frames(frames), m_keyframes(keyframes), m_mostWaiting(mostWaiting) {}
 
@@ -86,7 +86,7 @@ class Rebuilder {
     /// One step of the work that waits. False: none waits.
     bool work(const StepResources& with);
 
-   private:
+ private:
     struct Job {
         std::uint64_t tick = 0;
         std::optional<World> world;

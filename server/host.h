@@ -50,16 +50,16 @@ struct HostConfig {
     bool open = false;
     protocol::Fingerprint fingerprint;
     Limits limits;
-    int threads = 1;             ///< that step the worlds, shared by all sessions
-    bool handleSignals = true;   ///< SIGINT and SIGTERM end `run` cleanly
-    LogSink log;                 ///< none: `logToStandardError()`
+    int threads = 1;            ///< that step the worlds, shared by all sessions
+    bool handleSignals = true;  ///< SIGINT and SIGTERM end `run` cleanly
+    LogSink log;                ///< none: `logToStandardError()`
 };
 
 /// A part of the host beside the TCP listener, such as the web endpoint. Called on the host's
 /// thread; must not block. A part attaches its handles to `host.loop()` when it is made, and must
 /// close them all in `stopping`, or `run` does not return.
 class HostPart {
-   public:
+ public:
     virtual ~HostPart() = default;
     /// After a session closed a tick: `session.view(withShapes)` is what to draw.
     virtual void afterTick(const Session& session) = 0;
@@ -67,7 +67,7 @@ class HostPart {
 };
 
 class Host {
-   public:
+ public:
     /// Opens or recovers every session, binds the address. Sentences name file or address.
     static Result<std::unique_ptr<Host>> open(HostConfig config);
     ~Host();
@@ -89,7 +89,7 @@ class Host {
     /// Ends `run`; from any thread, or from a signal handler.
     void stop();
 
-   private:
+ private:
     struct Inside;
     explicit Host(std::unique_ptr<Inside> inside);
     std::unique_ptr<Inside> m_inside;

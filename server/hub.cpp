@@ -29,8 +29,11 @@ Result<Session*> Hub::add(SessionStart start, Instant now) {
     }
     const std::string name = start.name;
     auto session = std::make_unique<Session>(std::move(start), m_context.limits, now);
-    LogLine("session").with("session", name).with("epoch", session->epoch())
-        .with("tick", session->tick()).hex("root", session->world().motionRoot())
+    LogLine("session")
+        .with("session", name)
+        .with("epoch", session->epoch())
+        .with("tick", session->tick())
+        .hex("root", session->world().motionRoot())
         .to(m_context.log);
     return m_sessions.emplace(name, std::move(session)).first->second.get();
 }
@@ -76,10 +79,14 @@ SharedBytes Hub::next(ConnectionId id, std::size_t unsent, Instant now) {
     return found == m_connections.end() ? nullptr : found->second->next(unsent, now);
 }
 
-bool Hub::toClose(ConnectionId id, std::size_t unsent, Instant now) const {
+bool Hub::finished(ConnectionId id) const {
     const auto found = m_connections.find(id);
-    if (found == m_connections.end()) return true;
-    return (found->second->finished() && unsent == 0) || now >= found->second->closeBy();
+    return found == m_connections.end() || found->second->finished();
+}
+
+bool Hub::overdue(ConnectionId id, Instant now) const {
+    const auto found = m_connections.find(id);
+    return found == m_connections.end() || now >= found->second->closeBy();
 }
 
 void Hub::closed(ConnectionId id, Instant now) {
@@ -109,7 +116,9 @@ bool Hub::closeTick(Session& session, Instant now) {
     return may;
 }
 
-bool Hub::work(Session& session) { return session.rebuilder().work(m_resources); }
+bool Hub::work(Session& session) {
+    return session.rebuilder().work(m_resources);
+}
 
 void Hub::advance(Instant now) {
     for (const auto& [id, connection] : m_connections) connection->advance(now);
@@ -124,7 +133,9 @@ void Hub::failed(const std::string& session, const std::string& sentence, Instan
     const auto found = m_sessions.find(session);
     if (found == m_sessions.end() || found->second->failure()) return;
     found->second->fail(sentence);
-    LogLine("journal_failed").with("session", session).with("text", sentence)
+    LogLine("journal_failed")
+        .with("session", session)
+        .with("text", sentence)
         .to(m_context.log, Severity::Error);
     for (const auto& [id, connection] : m_connections) {
         if (connection->session() != found->second.get()) continue;
@@ -141,8 +152,11 @@ void Hub::stop(Instant now) {
     }
     for (const auto& [name, session] : m_sessions) {
         if (!session->failure()) m_journal.write(name, session->finalRecord());
-        LogLine("stopped").with("session", name).with("tick", session->tick())
-            .hex("root", session->world().motionRoot()).to(m_context.log);
+        LogLine("stopped")
+            .with("session", name)
+            .with("tick", session->tick())
+            .hex("root", session->world().motionRoot())
+            .to(m_context.log);
     }
 }
 

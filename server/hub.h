@@ -18,7 +18,7 @@ namespace huestep::server {
 
 /// Where closed ticks go. What became of them is told by `Hub::committed` and `Hub::failed`.
 class JournalSink {
-   public:
+ public:
     virtual ~JournalSink() = default;
     /// Must not block and must not call back into the hub.
     virtual void write(const std::string& session, ClosedTick closed) = 0;
@@ -32,7 +32,7 @@ struct HubConfig {
 };
 
 class Hub {
-   public:
+ public:
     Hub(HubConfig config, JournalSink& journal);
     Hub(const Hub&) = delete;
     Hub& operator=(const Hub&) = delete;
@@ -49,8 +49,11 @@ class Hub {
     void receive(ConnectionId id, std::span<const std::byte> bytes, Instant now);
     /// See `Connection::next`. Null for an unknown id too.
     SharedBytes next(ConnectionId id, std::size_t unsent, Instant now);
-    /// Whether the transport should close it: all is said, or time is up.
-    [[nodiscard]] bool toClose(ConnectionId id, std::size_t unsent, Instant now) const;
+    /// Nothing more will come for it: once what was handed out is sent, the transport says so to
+    /// the client, who then closes.
+    [[nodiscard]] bool finished(ConnectionId id) const;
+    /// It had its time to close: the transport does.
+    [[nodiscard]] bool overdue(ConnectionId id, Instant now) const;
     /// The transport is closed; the id is forgotten.
     void closed(ConnectionId id, Instant now);
     [[nodiscard]] std::vector<ConnectionId> connections() const;
@@ -71,7 +74,7 @@ class Hub {
     /// Bye to all, and a last record of each session to the journal.
     void stop(Instant now);
 
-   private:
+ private:
     Session* findByName(const std::string& name);
     void takeOver(Session& session, PlayerId player, ConnectionId by, Instant now);
 

@@ -19,42 +19,46 @@ struct Limits {
     std::uint32_t halfOpen = 64;  ///< connections without a finished Hello
 
     // A connection.
-    std::size_t helloBytes = 1'024;              ///< largest payload before Welcome
-    std::size_t messageBytes = 4'096;            ///< largest payload after it
-    Instant helloTime = 5 * second;              ///< from accept to a finished Hello
-    Instant partialTime = 5 * second;            ///< for the rest of a message begun
-    Instant pingEvery = 2 * second;              ///< of silence
-    Instant silenceTime = 15 * second;           ///< without a byte from the client
-    double messagesPerSecond = 240.0;            ///< token bucket of all messages
+    std::size_t helloBytes = 1'024;     ///< largest payload before Welcome
+    std::size_t messageBytes = 8'192;   ///< largest payload after it: an Intent
+    Instant helloTime = 5 * second;     ///< from accept to a finished Hello
+    Instant partialTime = 5 * second;   ///< for the rest of a message begun
+    Instant pingEvery = 2 * second;     ///< of silence
+    Instant silenceTime = 15 * second;  ///< without a byte from the client
+    double messagesPerSecond = 240.0;   ///< token bucket of all messages
     double messageBurst = 1'200.0;
-    double heavyPerSecond = 1.0;                 ///< token bucket of requests that cost work:
-    double heavyBurst = 6.0;                     ///< snapshots, hash queries, reports
+    double heavyPerSecond = 1.0;  ///< token bucket of requests that cost work:
+    double heavyBurst = 6.0;      ///< snapshots, hash queries, reports
 
     // A slow consumer: what lies in the transport for one client, and how far behind it may be.
-    std::size_t lowWater = 64u << 10;     ///< no more is handed out while so much is unsent
-    std::size_t clientBytes = 256u << 10; ///< hard: passing it ends the connection
-    Instant resyncBehind = 2 * second;    ///< behind by more: a snapshot instead of the tail
-    Instant dropBehind = 10 * second;     ///< behind for longer, or not a byte drained: Bye TooSlow
+    std::size_t lowWater = 64u << 10;      ///< no more is handed out while so much is unsent
+    std::size_t clientBytes = 256u << 10;  ///< hard: passing it ends the connection
+    Instant resyncBehind = 2 * second;     ///< behind by more: a snapshot instead of the tail
+    Instant dropBehind = 10 * second;  ///< behind for longer, or not a byte drained: Bye TooSlow
 
     // A session.
-    std::uint32_t queuedPerPlayer = 256;    ///< commands waiting, of one player
-    std::uint32_t queuedInTotal = 8'192;    ///< commands waiting, of all
-    std::uint32_t commandsPerFrame = 1'024; ///< beside the host's own
+    std::uint32_t queuedPerPlayer = 256;  ///< commands waiting, of one player
+    std::size_t queuedBytesPerPlayer = 64u << 10;
+    std::uint32_t queuedInTotal = 8'192;  ///< commands waiting, of all
+    std::size_t queuedBytes = 2u << 20;
+    std::uint32_t commandsPerFrame = 1'024;  ///< beside the host's own
     std::uint32_t perPlayerPerFrame = 32;
+    std::size_t frameCommandBytes = 128u << 10;  ///< of players' commands in one frame
     std::uint32_t joinsPerFrame = 16;
     std::uint32_t seats = 1'024;
-    std::uint32_t inputDelay = 0;           ///< ticks between an intent and its earliest frame
-    std::uint32_t lateTicks = 60;           ///< a player silent for longer is `substituted`
-    Instant seatKept = 30 * second;         ///< for a player whose connection broke
-    std::uint32_t recentFrames = 1'800;     ///< frames kept for those who are behind
-    std::size_t recentBytes = 4u << 20;     ///< the same in bytes; whichever is fewer
-    std::uint32_t keyframeTicks = 60;       ///< from one snapshot in memory to the next
-    std::uint32_t keyframes = 4;            ///< snapshots kept in memory
-    std::uint32_t freshTicks = 30;          ///< a joiner takes a snapshot no older than this
+    std::uint32_t inputDelay = 0;        ///< ticks between an intent and its earliest frame
+    std::uint32_t lateTicks = 60;        ///< a player silent for longer is `substituted`
+    Instant seatKept = 30 * second;      ///< for a player whose connection broke
+    std::uint32_t recentFrames = 1'800;  ///< frames kept for those who are behind
+    std::size_t recentBytes = 4u << 20;  ///< the same in bytes; whichever is fewer
+    std::uint32_t keyframeTicks = 60;    ///< from one snapshot in memory to the next
+    std::uint32_t keyframes = 4;         ///< snapshots kept in memory
+    std::uint32_t freshTicks = 30;       ///< a joiner takes a snapshot no older than this
     std::uint32_t journalSnapshotTicks = 600;
-    std::uint32_t uncommittedTicks = 600;   ///< the disk is behind by more: the session pauses
-    std::uint32_t rebuildsWaiting = 4;      ///< ticks asked for and not yet rebuilt
-    std::uint32_t catchUpTicks = 4;         ///< late ticks closed at once; the rest is let go
+    std::uint32_t segmentTicks = 36'000;   ///< the journal starts a new file
+    std::uint32_t uncommittedTicks = 600;  ///< the disk is behind by more: the session pauses
+    std::uint32_t rebuildsWaiting = 4;     ///< ticks asked for and not yet rebuilt
+    std::uint32_t catchUpTicks = 4;        ///< late ticks closed at once; the rest is let go
 };
 
 }  // namespace huestep::server

@@ -38,9 +38,12 @@ std::string quoted(std::string_view value) {
 
 spdlog::level::level_enum levelOf(Severity severity) {
     switch (severity) {
-        case Severity::Warning: return spdlog::level::warn;
-        case Severity::Error: return spdlog::level::err;
-        case Severity::Info: break;
+        case Severity::Warning:
+            return spdlog::level::warn;
+        case Severity::Error:
+            return spdlog::level::err;
+        case Severity::Info:
+            break;
     }
     return spdlog::level::info;
 }
@@ -57,7 +60,9 @@ LogSink logToStandardError() {
     };
 }
 
-LogLine::LogLine(std::string_view event) { with("event", event); }
+LogLine::LogLine(std::string_view event) {
+    with("event", event);
+}
 
 LogLine& LogLine::with(std::string_view key, std::string_view value) {
     if (!m_text.empty()) m_text += ' ';

@@ -19,7 +19,7 @@ LogSink logToStandardError();
 /// Builds one line: `event=joined session=play player=3`. Values with spaces, quotes or control
 /// bytes are quoted and escaped, so that a client cannot forge a line.
 class LogLine {
-   public:
+ public:
     explicit LogLine(std::string_view event);
     LogLine& with(std::string_view key, std::string_view value);
     LogLine& with(std::string_view key, std::uint64_t value);
@@ -27,7 +27,7 @@ class LogLine {
     void to(const LogSink& sink, Severity severity = Severity::Info) const;
     [[nodiscard]] const std::string& text() const { return m_text; }
 
-   private:
+ private:
     std::string m_text;
 };
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/state/hash.h"
+#include "protocol/codec.h"
 #include "protocol/scene_file.h"
 
 namespace huestep::server {
@@ -35,8 +36,8 @@ Result<Scene> storedScene(LogStore& store, const std::vector<std::string>& names
         return scene;
     }
     if (!request.scene) {
-        return Error{"session " + request.name + " has no scene to start from: " +
-                     store.describe(sceneFile) + " is not there"};
+        return Error{"session " + request.name +
+                     " has no scene to start from: " + store.describe(sceneFile) + " is not there"};
     }
     created = true;
     const Status written = store.replace(sceneFile, protocol::writeSceneBinary(*request.scene));
@@ -55,8 +56,9 @@ Result<ResumeKey> storedKey(LogStore& store, const std::vector<std::string>& nam
     if (!bytes) return bytes.error();
     ResumeKey key{};
     if (bytes->size() != key.size()) {
-        return Error{store.describe(keyFile) + ": has " + std::to_string(bytes->size()) +
-                     " bytes where a key has 16; delete it, and players who are away must join anew"};
+        return Error{
+            store.describe(keyFile) + ": has " + std::to_string(bytes->size()) +
+            " bytes where a key has 16; delete it, and players who are away must join anew"};
     }
     std::transform(bytes->begin(), bytes->end(), key.begin(),
                    [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
@@ -68,7 +70,8 @@ Result<World> baseWorld(LogStore& store, const JournalContents& contents, const 
                         SharedSnapshot& base) {
     Result<World> world = Error{"no snapshot"};
     if (contents.snapshotTick) {
-        Result<std::vector<std::byte>> bytes = protocol::readSnapshot(store, *contents.snapshotTick);
+        Result<std::vector<std::byte>> bytes =
+            protocol::readSnapshot(store, *contents.snapshotTick);
         if (!bytes) return bytes.error();
         world = World::restore(*bytes);
         if (!world) {
@@ -121,18 +124,14 @@ Status replayTail(const RecoveryRequest& request, JournalContents& contents, Wor
 }  // namespace
 
 Status checkSessionName(const std::string& name) {
-    const bool good = !name.empty() && name.size() <= 64 &&
-                      std::all_of(name.begin(), name.end(), [](char c) {
-                          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-                                 c == '-';
-                      });
-    if (good) return Done{};
+    if (protocol::isSessionName(name)) return Done{};
     return Error{"a session's name is 1 to 64 of a-z, 0-9, _ and -; this is not: '" +
                  name.substr(0, 80) + "'"};
 }
 
 Result<RecoveredSession> recoverSession(LogStore& store, const RecoveryRequest& request) {
     if (Status named = checkSessionName(request.name); !named) return named.error();
+    if (Status locked = store.lockForWriting(); !locked) return locked.error();
     Result<std::vector<std::string>> names = store.list();
     if (!names) return names.error();
     bool created = false;

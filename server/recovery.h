@@ -31,7 +31,7 @@ struct RecoveryRequest {
     StepResources resources;
 };
 
-/// Reads, replays and checks: every frame's `previousRoot` and every checkpoint's full root must be
+/// Locks the folder, reads, replays and checks: every frame's `previousRoot` and every checkpoint's full root must be
 /// what this build computes. The sentence names the file, or the tick that differs.
 Result<RecoveredSession> recoverSession(protocol::LogStore& store, const RecoveryRequest& request);
 

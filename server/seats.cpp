@@ -63,8 +63,8 @@ Result<PlayerId> Seats::resume(const protocol::ResumeToken& token, Instant now) 
     }
     const std::uint16_t issued = seat->second.issued;
     const bool thisEpoch = claim->epoch == static_cast<std::uint16_t>(m_epoch);
-    const bool current = thisEpoch && issued > 0 &&
-                         (claim->issue == issued || claim->issue + 1 == issued);
+    const bool current =
+        thisEpoch && issued > 0 && (claim->issue == issued || claim->issue + 1 == issued);
     const bool carriedOver = !thisEpoch && issued <= 1;
     if (!current && !carriedOver) return Error{"this token was used already"};
     seat->second.connected = true;
@@ -76,8 +76,7 @@ Result<PlayerId> Seats::resume(const protocol::ResumeToken& token, Instant now) 
 protocol::ResumeToken Seats::issue(PlayerId player) {
     Seat& seat = m_seats[player];
     ++seat.issued;
-    return makeToken(m_key, m_session,
-                     {player, static_cast<std::uint16_t>(m_epoch), seat.issued});
+    return makeToken(m_key, m_session, {player, static_cast<std::uint16_t>(m_epoch), seat.issued});
 }
 
 void Seats::vacate(PlayerId player, bool forGood, Instant now) {
@@ -97,9 +96,8 @@ std::vector<Command> Seats::commandsFor(const World& world, std::uint64_t sequen
     std::vector<Command> out;
     for (auto& [player, seat] : m_seats) {
         const bool expired = !seat.connected && now > seat.emptySince + m_limits.seatKept;
-        const bool owed = std::any_of(m_joins.begin(), m_joins.end(), [p = player](const auto& j) {
-            return j.second.player == p;
-        });
+        const bool owed = std::any_of(m_joins.begin(), m_joins.end(),
+                                      [p = player](const auto& j) { return j.second.player == p; });
         if ((seat.leaving || (expired && !owed)) && out.size() < m_limits.joinsPerFrame) {
             seat.leaving = true;
             out.push_back({0, ++sequence, RemovePlayer{player}});
@@ -148,7 +146,9 @@ void Seats::applied(const World& world, std::uint64_t tick) {
     }
 }
 
-void Seats::committed(std::uint64_t below) { m_committed = std::max(m_committed, below); }
+void Seats::committed(std::uint64_t below) {
+    m_committed = std::max(m_committed, below);
+}
 
 std::vector<PlayerId> Seats::late(std::uint64_t tick) const {
     std::vector<PlayerId> out;

@@ -21,7 +21,7 @@ namespace huestep::server {
 using JoinId = std::uint64_t;  ///< a wish to join; 0 is none
 
 class Seats {
-   public:
+ public:
     Seats(std::string session, std::uint32_t epoch, const ResumeKey& key, const Limits& limits);
 
     /// Seats of a world that was recovered: all empty, kept as if they had just become so.
@@ -63,18 +63,18 @@ class Seats {
     [[nodiscard]] std::size_t taken() const { return m_seats.size(); }
     [[nodiscard]] std::size_t connected() const;
 
-   private:
+ private:
     struct Seat {
         bool connected = false;
-        bool leaving = false;     ///< its RemovePlayer comes next
+        bool leaving = false;  ///< its RemovePlayer comes next
         Instant emptySince = 0;
         std::uint64_t heardAt = 0;  ///< tick
         std::uint16_t issued = 0;   ///< tokens of this epoch
     };
     struct Join {
-        PlayerId player = 0;             ///< once its frame is closed
-        std::uint64_t committedAt = 0;   ///< the seat is handed over at this tick
-        bool asked = false;              ///< its AddPlayer is in the frame being closed
+        PlayerId player = 0;            ///< once its frame is closed
+        std::uint64_t committedAt = 0;  ///< the seat is handed over at this tick
+        bool asked = false;             ///< its AddPlayer is in the frame being closed
         std::string refusal;
     };
 

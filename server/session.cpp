@@ -28,7 +28,7 @@ Session::Session(SessionStart start, const Limits& limits, Instant now)
       m_limits(limits),
       m_world(std::move(start.world)),
       m_seats(m_name, start.epoch, start.key, limits),
-      m_queue(limits.queuedPerPlayer, limits.queuedInTotal),
+      m_queue(limits),
       m_frames(limits.recentFrames, limits.recentBytes),
       m_keyframes(limits.keyframes),
       m_rebuilder(m_frames, m_keyframes, limits.rebuildsWaiting),
@@ -45,7 +45,9 @@ double Session::ticksPerSecond() const {
     return 1.0 / static_cast<double>(m_world.info().stepSeconds);
 }
 
-bool Session::hasPlayers() const { return (m_world.info().flags & WorldInfo::players) != 0; }
+bool Session::hasPlayers() const {
+    return (m_world.info().flags & WorldInfo::players) != 0;
+}
 
 bool Session::mayClose() const {
     return !m_failure && tick() < m_committed + m_limits.uncommittedTicks;
@@ -74,12 +76,12 @@ ClosedTick Session::closeTick(Instant now, const StepResources& with) {
         out.entries.insert(out.entries.end(), record.entries.begin(), record.entries.end());
         out.snapshot = record.snapshot;
     }
+    out.newSegment = tick() % m_limits.segmentTicks == 0;
     return out;
 }
 
 std::vector<Command> Session::gatherCommands(Instant now) {
-    std::vector<Command> commands =
-        m_seats.commandsFor(m_world, sequenceIn(m_world, 0), now);
+    std::vector<Command> commands = m_seats.commandsFor(m_world, sequenceIn(m_world, 0), now);
     for (const Command& command : commands) {
         if (const auto* removed = std::get_if<RemovePlayer>(&command.action)) {
             m_queue.forget(removed->player);
@@ -89,7 +91,7 @@ std::vector<Command> Session::gatherCommands(Instant now) {
     const std::uint32_t cap = m_world.info().maxCommandsPerTick;
     const auto own = static_cast<std::uint32_t>(commands.size());
     const std::uint32_t room = std::min(m_limits.commandsPerFrame, cap > own ? cap - own : 0);
-    std::vector<Command> queued = m_queue.take(tick(), m_limits.perPlayerPerFrame, room);
+    std::vector<Command> queued = m_queue.take(tick(), room);
     commands.insert(commands.end(), std::make_move_iterator(queued.begin()),
                     std::make_move_iterator(queued.end()));
     sortByKey(commands);
@@ -130,10 +132,12 @@ std::optional<std::uint64_t> Session::rootAt(std::uint64_t at) const {
     return std::nullopt;
 }
 
-SharedSnapshot Session::snapshotForJoin() {
+SharedSnapshot Session::snapshotForJoin(std::uint64_t notBefore) {
+    const std::uint64_t recent = tick() > m_limits.freshTicks ? tick() - m_limits.freshTicks : 0;
+    const std::uint64_t oldest = std::max(recent, std::min(notBefore, tick()));
     const SharedSnapshot keyframe = m_keyframes.newest();
     for (const SharedSnapshot& candidate : {m_fresh, keyframe}) {
-        if (!candidate || candidate->tick + m_limits.freshTicks < tick()) continue;
+        if (!candidate || candidate->tick < oldest) continue;
         if (candidate->tick == tick() || m_frames.find(candidate->tick)) return candidate;
     }
     m_fresh = takeSnapshot(m_world);

@@ -34,12 +34,13 @@ struct SessionStart {
 /// For the journal, in this order: the entries in one batch, then the snapshot.
 struct ClosedTick {
     std::vector<protocol::JournalEntry> entries;
-    SharedSnapshot snapshot;         ///< null unless one is due
-    std::uint64_t commits = 0;       ///< what to hand to `committed` once the entries are on disk
+    SharedSnapshot snapshot;    ///< null unless one is due
+    bool newSegment = false;    ///< the journal goes on in a new file after this
+    std::uint64_t commits = 0;  ///< what to hand to `committed` once the entries are on disk
 };
 
 class Session {
-   public:
+ public:
     Session(SessionStart start, const Limits& limits, Instant now);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -78,8 +79,9 @@ class Session {
     /// Motion root of a recent tick, or of now.
     [[nodiscard]] std::optional<std::uint64_t> rootAt(std::uint64_t tick) const;
     /// A snapshot for a joiner: at most `freshTicks` old, its frames still in the ring. Many
-    /// joiners share one, so that they cost the session one save.
-    SharedSnapshot snapshotForJoin();
+    /// joiners share one, so that they cost the session one save. Not before `notBefore`, where
+    /// the client has been, if the session has come so far.
+    SharedSnapshot snapshotForJoin(std::uint64_t notBefore = 0);
     /// Worlds of recent ticks, for comparing with a client whose world differs.
     Rebuilder& rebuilder() { return m_rebuilder; }
 
@@ -88,7 +90,7 @@ class Session {
     /// Rises when a body or a shape came or went.
     [[nodiscard]] std::uint32_t definitions() const { return m_definitions; }
 
-   private:
+ private:
     std::vector<Command> gatherCommands(Instant now);
     void noteDefinitions();
 

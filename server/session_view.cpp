@@ -31,8 +31,7 @@ void addShapes(const World& world, protocol::View& view) {
         drawn.body = *place;
         drawn.kind = shape.shapeKind();
         drawn.radius = shape.radius;
-        drawn.vertices.assign(shape.vertices.begin(),
-                              shape.vertices.begin() + shape.vertexCount());
+        drawn.vertices.assign(shape.vertices.begin(), shape.vertices.begin() + shape.vertexCount());
         view.shapes.push_back(std::move(drawn));
     }
 }
@@ -67,8 +66,8 @@ protocol::View Session::view(bool withShapes) const {
     view.poses.reserve(drawn);
     view.flags.reserve(drawn);
     for (std::size_t i = 0; i < drawn; ++i) {
-        const bool players =
-            bodies[i].owner != 0 || std::find(owned.begin(), owned.end(), bodies[i].id) != owned.end();
+        const bool players = bodies[i].owner != 0 ||
+                             std::find(owned.begin(), owned.end(), bodies[i].id) != owned.end();
         view.poses.push_back(motions[i].pose());
         view.flags.push_back(flagsOf(bodies[i], motions[i], players));
         if (withShapes) view.bodies.push_back(bodies[i].id);

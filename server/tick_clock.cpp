@@ -6,9 +6,14 @@
 namespace huestep::server {
 
 TickClock::TickClock(Instant start, double ticksPerSecond, double phase, std::uint32_t catchUp)
-    : m_start(start), m_period(1e9 / ticksPerSecond), m_catchUp(std::max(catchUp, 1u)) {
+    : m_period(1e9 / ticksPerSecond), m_phase(phase), m_catchUp(std::max(catchUp, 1u)) {
     assert(ticksPerSecond > 0.0);
-    m_start += static_cast<Instant>(phase * m_period);
+    restart(start);
+}
+
+void TickClock::restart(Instant start) {
+    m_start = start + static_cast<Instant>(m_phase * m_period);
+    m_next = 0;
 }
 
 Instant TickClock::deadline(std::uint64_t k) const {

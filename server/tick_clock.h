@@ -11,9 +11,12 @@ namespace huestep::server {
 /// late timer adds up. A process that was held up closes at most `catchUp` late ticks at once and
 /// lets the rest of the time go: the session is then later than the wall clock, never overloaded.
 class TickClock {
-   public:
+ public:
     /// `ticksPerSecond` > 0. `phase` in [0, 1) of a period staggers sessions.
     TickClock(Instant start, double ticksPerSecond, double phase, std::uint32_t catchUp);
+
+    /// Starts over with deadline 0 at `start` and the phase.
+    void restart(Instant start);
 
     /// How many ticks are to be closed now. Each call counts as having closed them.
     std::uint32_t due(Instant now);
@@ -22,11 +25,12 @@ class TickClock {
     /// Ticks' worth of time let go so far.
     [[nodiscard]] std::uint64_t letGo() const { return m_letGo; }
 
-   private:
+ private:
     [[nodiscard]] Instant deadline(std::uint64_t k) const;
 
-    Instant m_start;
+    Instant m_start = 0;
     double m_period;  ///< ns
+    double m_phase;
     std::uint32_t m_catchUp;
     std::uint64_t m_next = 0;
     std::uint64_t m_letGo = 0;

@@ -8,7 +8,7 @@
 namespace huestep::server {
 
 class TokenBucket {
-   public:
+ public:
     TokenBucket(double perSecond, double burst, Instant now)
         : m_perSecond(perSecond), m_burst(burst), m_tokens(burst), m_filled(now) {}
 
@@ -22,7 +22,7 @@ class TokenBucket {
         return true;
     }
 
-   private:
+ private:
     double m_perSecond;
     double m_burst;
     double m_tokens;

@@ -1,0 +1,81 @@
+/// A TCP connection to a server, made anew when it breaks. Thread rule: the loop's thread.
+#pragma once
+
+#include <uv.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "protocol/address.h"
+#include "protocol/frame.h"
+
+namespace huestep::client {
+
+/// How long to wait before the attempt after `failures` failed ones: 50 ms, doubling, at most 2 s,
+/// less up to a quarter drawn from `dice`, so that clients of one server do not come all at once.
+std::uint64_t backoffMs(std::uint32_t failures, std::uint32_t dice);
+
+/// Most bytes that may wait to be written; a server that does not read so much is given up.
+inline constexpr std::size_t maxUnsentBytes = 1u << 20;
+inline constexpr std::uint64_t lingerMs = 500;
+
+class Connection {
+ public:
+    struct Events {
+        std::function<void()> connected;
+        std::function<void(protocol::Message)> message;
+        /// All messages that had arrived have been told.
+        std::function<void()> idle;
+        /// The connection is gone, or an attempt failed; the sentence says why. Another attempt
+        /// follows by itself unless `stop` is called.
+        std::function<void(const std::string& why)> lost;
+    };
+
+    Connection(uv_loop_t& loop, protocol::Address address, Events events);
+    /// After `stop`, and once the loop has run out.
+    ~Connection();
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    void start();
+    void send(const protocol::Message& message);
+    /// Ends this connection; another attempt follows. What waits is written first, within
+    /// `lingerMs`.
+    void drop(const std::string& why);
+    /// Ends it likewise, with no more attempts and no more events.
+    void stop();
+
+    [[nodiscard]] std::uint64_t bytesIn() const { return m_bytesIn; }
+    [[nodiscard]] std::uint64_t bytesOut() const { return m_bytesOut; }
+
+ private:
+    struct Socket;
+    struct Write;
+    static void onConnect(uv_connect_t* request, int status);
+    static void onAlloc(uv_handle_t* handle, std::size_t suggested, uv_buf_t* buffer);
+    static void onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buffer);
+
+    void attempt();
+    void attemptLater();
+    void received(std::span<const std::byte> bytes);
+    void letGo();
+
+    uv_loop_t& m_loop;
+    protocol::Address m_address;
+    Events m_events;
+    uv_timer_t* m_timer;         ///< of the next attempt, or of the end; frees itself when closed
+    Socket* m_socket = nullptr;  ///< frees itself when closed
+    std::optional<protocol::FrameSplitter> m_splitter;
+    std::uint32_t m_failures = 0;
+    bool m_stopped = false;
+    std::uint64_t m_bytesIn = 0;
+    std::uint64_t m_bytesOut = 0;
+    std::array<char, 65536> m_input{};
+};
+
+}  // namespace huestep::client

@@ -1,0 +1,194 @@
+#include "client/player.h"
+
+#include <uv.h>
+
+#include <csignal>
+#include <optional>
+#include <utility>
+
+#include "client/connection.h"
+#include "protocol/address.h"
+
+namespace huestep::client {
+
+namespace {
+
+constexpr std::uint64_t houseMs = 50;
+constexpr std::uint64_t progressMs = 1'000;
+
+bool isFinal(const protocol::Bye& bye) {
+    // A refused token costs the seat, not the game: the next attempt joins anew.
+    return !bye.mayResume && bye.reason != protocol::ByeReason::ResumeRefused;
+}
+
+/// One client's life on a loop of its own.
+class Life {
+ public:
+    Life(PlayerConfig config, protocol::Address address)
+        : m_config(std::move(config)),
+          m_executor(m_config.threads > 1 ? std::make_unique<Executor>(m_config.threads) : nullptr),
+          m_replica(ReplicaConfig{
+              m_config.session, m_config.role, m_config.fingerprint, {m_executor.get()}}) {
+        if (!m_config.bot) m_config.bot = makeIdleBot();
+        uv_loop_init(&m_loop);
+        m_connection = std::make_unique<Connection>(
+            m_loop, std::move(address),
+            Connection::Events{[this] { connected(); },
+                               [this](protocol::Message m) { message(std::move(m)); },
+                               [this] { idle(); }, [this](const std::string& why) { lost(why); }});
+        uv_timer_init(&m_loop, &m_house);
+        uv_signal_init(&m_loop, &m_interrupt);
+        uv_signal_init(&m_loop, &m_terminate);
+        m_house.data = m_interrupt.data = m_terminate.data = this;
+    }
+    ~Life() { uv_loop_close(&m_loop); }
+    Life(const Life&) = delete;
+    Life& operator=(const Life&) = delete;
+
+    Result<Statistics> run() {
+        m_apartSince = m_progressAt = uv_hrtime();
+        uv_timer_start(
+            &m_house, [](uv_timer_t* timer) { static_cast<Life*>(timer->data)->house(); }, houseMs,
+            houseMs);
+        if (m_config.handleSignals) {
+            const auto onSignal = [](uv_signal_t* handle, int) {
+                static_cast<Life*>(handle->data)->leave();
+            };
+            uv_signal_start(&m_interrupt, onSignal, SIGINT);
+            uv_signal_start(&m_terminate, onSignal, SIGTERM);
+        }
+        m_connection->start();
+        uv_run(&m_loop, UV_RUN_DEFAULT);
+        if (m_failure) return Error{*m_failure};
+        return statistics();
+    }
+
+ private:
+    void connected() {
+        m_replica.connected(uv_hrtime());
+        flush();
+    }
+
+    void message(protocol::Message message) {
+        const std::uint64_t mismatches = m_replica.counts().mismatches;
+        const Status taken = m_replica.receive(std::move(message), uv_hrtime());
+        flush();
+        if (m_replica.counts().mismatches != mismatches) {
+            notice("this world differs from the server's; asking for its state");
+        }
+        if (m_replica.following()) m_apartSince = 0;
+        if (!taken) return m_connection->drop(taken.error().message);
+        if (!m_replica.bye()) return;
+        const protocol::Bye bye = *m_replica.bye();
+        if (isFinal(bye)) return fail("the server refuses: " + bye.text);
+        m_connection->drop("the server says: " + bye.text);
+    }
+
+    /// Everything that arrived is applied: the bot sees the newest world, once.
+    void idle() {
+        const World* world = m_replica.world();
+        if (m_ended || !world || !m_replica.following()) return;
+        const std::uint64_t ticks = m_replica.counts().ticks;
+        if (m_config.ticks != 0 && ticks >= m_config.ticks) return leave();
+        if (ticks == m_botTicks) return;
+        m_botTicks = ticks;
+        for (Action& action : m_config.bot->act({*world, m_replica.player(), ownBody(), ticks})) {
+            m_replica.act(std::move(action), uv_hrtime());
+        }
+        flush();
+    }
+
+    [[nodiscard]] BodyId ownBody() const {
+        for (const PlayerRecord& player : m_replica.world()->players()) {
+            if (player.id == m_replica.player()) return player.body;
+        }
+        return 0;
+    }
+
+    void lost(const std::string& why) {
+        m_replica.disconnected();
+        if (m_apartSince == 0) {
+            m_apartSince = uv_hrtime();
+            notice("connection lost: " + why);
+        }
+        m_lastWhy = why;
+    }
+
+    void house() {
+        const Instant now = uv_hrtime();
+        if (m_config.stop && m_config.stop->load()) leave();
+        const double limit = m_replica.counts().connections == 0 ? m_config.connectSeconds
+                                                                 : m_config.reconnectSeconds;
+        if (m_apartSince != 0 && static_cast<double>(now - m_apartSince) > limit * 1e9) {
+            fail("no connection to " + m_config.address + ": " +
+                 (m_lastWhy.empty() ? "no answer" : m_lastWhy));
+        }
+        if (m_config.onProgress && now > m_progressAt + progressMs * 1'000'000) {
+            m_progressAt = now;
+            m_config.onProgress(statistics());
+        }
+    }
+
+    void leave() {
+        if (m_ended) return;
+        m_replica.leave();
+        flush();
+        end();
+    }
+
+    void fail(std::string sentence) {
+        if (m_ended) return;
+        m_failure = std::move(sentence);
+        end();
+    }
+
+    void end() {
+        m_ended = true;
+        m_connection->stop();
+        uv_close(reinterpret_cast<uv_handle_t*>(&m_house), nullptr);
+        uv_close(reinterpret_cast<uv_handle_t*>(&m_interrupt), nullptr);
+        uv_close(reinterpret_cast<uv_handle_t*>(&m_terminate), nullptr);
+    }
+
+    void flush() {
+        for (const protocol::Message& message : m_replica.takeOutgoing()) {
+            m_connection->send(message);
+        }
+    }
+
+    void notice(const std::string& sentence) {
+        if (m_config.onNotice) m_config.onNotice(sentence);
+    }
+
+    [[nodiscard]] Statistics statistics() const {
+        Statistics out = m_replica.statistics();
+        out.bytesIn = m_connection->bytesIn();
+        out.bytesOut = m_connection->bytesOut();
+        return out;
+    }
+
+    PlayerConfig m_config;
+    std::unique_ptr<Executor> m_executor;
+    Replica m_replica;
+    uv_loop_t m_loop{};
+    std::unique_ptr<Connection> m_connection;
+    uv_timer_t m_house{};
+    uv_signal_t m_interrupt{};
+    uv_signal_t m_terminate{};
+    Instant m_apartSince = 0;  ///< 0: playing
+    Instant m_progressAt = 0;
+    std::uint64_t m_botTicks = 0;
+    std::string m_lastWhy;
+    std::optional<std::string> m_failure;
+    bool m_ended = false;
+};
+
+}  // namespace
+
+Result<Statistics> play(PlayerConfig config) {
+    Result<protocol::Address> address = protocol::parseAddress(config.address, false);
+    if (!address) return address.error();
+    return Life(std::move(config), std::move(*address)).run();
+}
+
+}  // namespace huestep::client

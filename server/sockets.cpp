@@ -1,0 +1,209 @@
+#include "server/sockets.h"
+
+#include <cassert>
+#include <utility>
+#include <vector>
+
+namespace huestep::server {
+
+struct Sockets::Socket {
+    uv_tcp_t tcp{};
+    Sockets* owner = nullptr;
+    ConnectionId id = 0;
+    bool closing = false;
+    bool shutDown = false;
+    uv_shutdown_t shutdown{};
+};
+
+/// One write and the bytes it shares with other writes.
+struct Sockets::Write {
+    uv_write_t request{};
+    Socket* socket = nullptr;
+    std::vector<SharedBytes> bytes;
+};
+
+namespace {
+
+/// The kernel's share of what a slow client has not read; small, so that lag shows.
+constexpr int sendBufferBytes = 128 << 10;
+constexpr int backlog = 128;
+
+template <class Handle>
+uv_handle_t* asHandle(Handle* handle) {
+    return reinterpret_cast<uv_handle_t*>(handle);
+}
+template <class Handle>
+uv_stream_t* asStream(Handle* handle) {
+    return reinterpret_cast<uv_stream_t*>(handle);
+}
+
+protocol::Address addressOf(const sockaddr_storage& storage) {
+    char text[64] = "?";
+    protocol::Address out;
+    if (storage.ss_family == AF_INET6) {
+        const auto* six = reinterpret_cast<const sockaddr_in6*>(&storage);
+        uv_ip6_name(six, text, sizeof text);
+        out.port = ntohs(six->sin6_port);
+    } else {
+        const auto* four = reinterpret_cast<const sockaddr_in*>(&storage);
+        uv_ip4_name(four, text, sizeof text);
+        out.port = ntohs(four->sin_port);
+    }
+    out.host = text;
+    return out;
+}
+
+Error refused(const protocol::Address& address, int status) {
+    return Error{"cannot listen on " + protocol::toText(address) + ": " + uv_strerror(status)};
+}
+
+}  // namespace
+
+Sockets::Sockets(uv_loop_t& loop, Hub& hub) : m_loop(loop), m_hub(hub) {}
+
+Sockets::~Sockets() {
+    assert(m_sockets.empty());
+    assert(!m_listener || !m_listener->open);
+}
+
+Status Sockets::listen(const protocol::Address& address) {
+    // Without a callback libuv resolves at once; this is the start of the program.
+    uv_getaddrinfo_t resolver{};
+    addrinfo hints{};
+    hints.ai_socktype = SOCK_STREAM;
+    hints.ai_flags = AI_PASSIVE;
+    const std::string port = std::to_string(address.port);
+    int status =
+        uv_getaddrinfo(&m_loop, &resolver, nullptr, address.host.c_str(), port.c_str(), &hints);
+    if (status != 0) return refused(address, status);
+    const std::unique_ptr<addrinfo, void (*)(addrinfo*)> found(resolver.addrinfo, uv_freeaddrinfo);
+
+    m_listener = std::make_unique<Listener>();
+    m_listener->owner = this;
+    m_listener->handle.data = m_listener.get();
+    status = uv_tcp_init(&m_loop, &m_listener->handle);
+    if (status != 0) return refused(address, status);
+    m_listener->open = true;
+    status = uv_tcp_bind(&m_listener->handle, found->ai_addr, 0);
+    if (status == 0) status = uv_listen(asStream(&m_listener->handle), backlog, onConnection);
+    if (status != 0) {
+        stopListening();
+        return refused(address, status);
+    }
+    sockaddr_storage storage{};
+    int length = sizeof storage;
+    uv_tcp_getsockname(&m_listener->handle, reinterpret_cast<sockaddr*>(&storage), &length);
+    m_bound = addressOf(storage);
+    return Done{};
+}
+
+void Sockets::stopListening() {
+    if (!m_listener || !m_listener->open) return;
+    m_listener->open = false;
+    uv_close(asHandle(&m_listener.release()->handle),
+             [](uv_handle_t* handle) { delete static_cast<Listener*>(handle->data); });
+}
+
+void Sockets::onConnection(uv_stream_t* listener, int status) {
+    if (status == 0) static_cast<Listener*>(listener->data)->owner->accept();
+}
+
+void Sockets::accept() {
+    auto socket = std::make_unique<Socket>();
+    socket->owner = this;
+    uv_tcp_init(&m_loop, &socket->tcp);
+    socket->tcp.data = socket.get();
+    std::optional<ConnectionId> id;
+    if (uv_accept(asStream(&m_listener->handle), asStream(&socket->tcp)) == 0) {
+        sockaddr_storage storage{};
+        int length = sizeof storage;
+        uv_tcp_getpeername(&socket->tcp, reinterpret_cast<sockaddr*>(&storage), &length);
+        id = m_hub.accept(protocol::toText(addressOf(storage)), uv_hrtime());
+    }
+    if (!id) {
+        // Over a limit: closed without a word, the cheapest answer there is.
+        uv_close(asHandle(&socket.release()->tcp),
+                 [](uv_handle_t* handle) { delete static_cast<Socket*>(handle->data); });
+        return;
+    }
+    socket->id = *id;
+    start(std::move(socket));
+}
+
+void Sockets::start(std::unique_ptr<Socket> socket) {
+    int sendBuffer = sendBufferBytes;
+    uv_send_buffer_size(asHandle(&socket->tcp), &sendBuffer);
+    uv_tcp_nodelay(&socket->tcp, 1);
+    m_sockets.emplace(socket->id, socket.get());
+    uv_read_start(asStream(&socket.release()->tcp), onAlloc, onRead);
+}
+
+void Sockets::onAlloc(uv_handle_t* handle, std::size_t, uv_buf_t* buffer) {
+    Sockets& owner = *static_cast<Socket*>(handle->data)->owner;
+    *buffer = uv_buf_init(owner.m_input.data(), static_cast<unsigned>(owner.m_input.size()));
+}
+
+void Sockets::onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buffer) {
+    Socket& socket = *static_cast<Socket*>(stream->data);
+    Sockets& owner = *socket.owner;
+    if (count < 0) return owner.close(socket);
+    const std::span<const char> bytes(buffer->base, static_cast<std::size_t>(count));
+    owner.m_hub.receive(socket.id, std::as_bytes(bytes), uv_hrtime());
+    owner.flush(socket);
+}
+
+void Sockets::flush() {
+    // A flush may close a socket, which takes it out of the map.
+    for (auto next = m_sockets.begin(); next != m_sockets.end();) flush(*(next++)->second);
+}
+
+void Sockets::flush(Socket& socket) {
+    if (socket.closing) return;
+    const Instant now = uv_hrtime();
+    std::size_t unsent = uv_stream_get_write_queue_size(asStream(&socket.tcp));
+    auto write = std::make_unique<Write>();
+    std::vector<uv_buf_t> buffers;
+    while (SharedBytes bytes = m_hub.next(socket.id, unsent, now)) {
+        unsent += bytes->size();
+        // libuv does not write through the pointer; its buffers are shared with reads.
+        auto* data = const_cast<char*>(reinterpret_cast<const char*>(bytes->data()));
+        buffers.push_back(uv_buf_init(data, static_cast<unsigned>(bytes->size())));
+        write->bytes.push_back(std::move(bytes));
+    }
+    if (!buffers.empty()) {
+        write->socket = &socket;
+        write->request.data = write.get();
+        const int status = uv_write(&write->request, asStream(&socket.tcp), buffers.data(),
+                                    static_cast<unsigned>(buffers.size()), onWritten);
+        if (status != 0) return close(socket);
+        static_cast<void>(write.release());  // `onWritten` takes it back
+        unsent = uv_stream_get_write_queue_size(asStream(&socket.tcp));
+    }
+    if (m_hub.overdue(socket.id, now)) return close(socket);
+    if (!m_hub.finished(socket.id) || socket.shutDown) return;
+    // Half closed only: closing at once could drop the Bye with whatever the client still sends.
+    socket.shutDown = true;
+    uv_shutdown(&socket.shutdown, asStream(&socket.tcp), nullptr);
+}
+
+void Sockets::onWritten(uv_write_t* request, int status) {
+    const std::unique_ptr<Write> write(static_cast<Write*>(request->data));
+    Socket& socket = *write->socket;
+    if (status != 0) return socket.owner->close(socket);
+    socket.owner->flush(socket);
+}
+
+void Sockets::close(Socket& socket) {
+    if (socket.closing) return;
+    socket.closing = true;
+    m_sockets.erase(socket.id);
+    m_hub.closed(socket.id, uv_hrtime());
+    uv_close(asHandle(&socket.tcp),
+             [](uv_handle_t* handle) { delete static_cast<Socket*>(handle->data); });
+}
+
+void Sockets::closeAll() {
+    while (!m_sockets.empty()) close(*m_sockets.begin()->second);
+}
+
+}  // namespace huestep::server

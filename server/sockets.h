@@ -1,0 +1,63 @@
+/// TCP for the hub: a listener, and a socket a connection. Thread rule: the loop's thread.
+#pragma once
+
+#include <uv.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "core/result.h"
+#include "protocol/address.h"
+#include "server/hub.h"
+
+namespace huestep::server {
+
+class Sockets {
+ public:
+    Sockets(uv_loop_t& loop, Hub& hub);
+    ~Sockets();
+    Sockets(const Sockets&) = delete;
+    Sockets& operator=(const Sockets&) = delete;
+
+    /// Binds and listens. The sentence names the address and what the system says.
+    Status listen(const protocol::Address& address);
+    /// As bound. Requires a `listen` that succeeded.
+    [[nodiscard]] const protocol::Address& bound() const { return m_bound; }
+
+    /// Writes what the hub has for each client, closes what is finished.
+    void flush();
+    void stopListening();
+    /// Closes every socket, whatever it still holds.
+    void closeAll();
+    [[nodiscard]] bool none() const { return m_sockets.empty(); }
+
+ private:
+    struct Socket;
+    struct Write;
+    struct Listener {
+        uv_tcp_t handle{};
+        Sockets* owner = nullptr;
+        bool open = false;
+    };
+    static void onConnection(uv_stream_t* listener, int status);
+    static void onAlloc(uv_handle_t* handle, std::size_t suggested, uv_buf_t* buffer);
+    static void onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buffer);
+    static void onWritten(uv_write_t* request, int status);
+
+    void accept();
+    void start(std::unique_ptr<Socket> socket);
+    void flush(Socket& socket);
+    void close(Socket& socket);
+
+    uv_loop_t& m_loop;
+    Hub& m_hub;
+    std::unique_ptr<Listener> m_listener;
+    protocol::Address m_bound;
+    std::map<ConnectionId, Socket*> m_sockets;  ///< open ones; each frees itself once closed
+    /// One buffer for all reads: libuv hands it back before it asks again.
+    std::array<char, 65536> m_input{};
+};
+
+}  // namespace huestep::server
