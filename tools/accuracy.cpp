@@ -1,0 +1,112 @@
+#include "tools/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace huestep::tools {
+namespace {
+
+using Vec2d = Vec2T<double>;
+
+constexpr std::size_t smallScene = 256;   // bodies up to which every tick is measured
+constexpr std::uint64_t largeEvery = 30;  // ticks between measures of larger scenes
+
+Vec2d wide(Vec2 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y)};
+}
+
+double kineticEnergy(const BodyInfo& body, const BodyMotion& motion) {
+    const auto w = static_cast<double>(motion.angularVelocity);
+    return 0.5 * static_cast<double>(body.mass) * lengthSquared(wide(motion.velocity)) +
+           0.5 * static_cast<double>(body.inertia) * w * w;
+}
+
+double energyScale(const World& world) {
+    double mass = 0.0;
+    double kinetic = 0.0;
+    Vec2d low{1e300, 1e300};
+    Vec2d high{-1e300, -1e300};
+    for (std::size_t i = 0; i < world.bodies().size(); ++i) {
+        const BodyInfo& body = world.bodies()[i];
+        const BodyMotion& motion = world.motions()[i];
+        low = minOf(low, wide(motion.position));
+        high = maxOf(high, wide(motion.position));
+        if (!body.dynamic()) continue;
+        mass += static_cast<double>(body.mass);
+        kinetic += kineticEnergy(body, motion);
+    }
+    const double extent = std::max(world.bodies().empty() ? 0.0 : length(high - low), 1.0);
+    const double scale = mass * length(wide(world.info().gravity)) * extent + kinetic;
+    return scale > 0.0 ? scale : 1.0;
+}
+
+}  // namespace
+
+Accuracy::Accuracy(const World& start)
+    : m_definitions(start),
+      m_every(start.bodies().size() <= smallScene ? 1 : largeEvery),
+      m_scale(energyScale(start)),
+      m_pendulum(Pendulum::find(start)),
+      m_ballistic(Ballistic::find(start)) {
+    m_startEnergy =
+        measure(start.info(), start.bodies(), start.shapes(), start.joints(), start.motions())
+            .energy;
+}
+
+void Accuracy::watch(std::uint64_t tick, std::span<const BodyMotion> motions, bool touching) {
+    if (m_pendulum) m_pendulum->watch(motions);
+    if (m_ballistic) m_ballistic->watch(motions, touching);
+    if (tick % m_every == 0) take(motions);
+}
+
+void Accuracy::take(std::span<const BodyMotion> motions) {
+    const World& d = m_definitions;
+    const Measures now = measure(d.info(), d.bodies(), d.shapes(), d.joints(), motions);
+    m_result.energyDrift = (now.energy - m_startEnergy) / m_scale;
+    m_result.energyInjection = std::max(m_result.energyInjection, m_result.energyDrift);
+    m_result.maxPenetration = std::max(m_result.maxPenetration, now.maxPenetration);
+    m_result.meanPenetration = now.meanPenetration;
+    m_result.maxJointError = std::max(m_result.maxJointError, now.maxJointError);
+}
+
+AccuracyResult Accuracy::finish(std::span<const BodyMotion> last) {
+    take(last);
+    if (m_pendulum) m_result.pendulum = m_pendulum->result(last);
+    if (m_ballistic) m_result.ballistic = m_ballistic->result();
+    return m_result;
+}
+
+Json asJson(const AccuracyResult& r) {
+    Json json = {{"energy_drift", r.energyDrift},
+                 {"energy_injection", r.energyInjection},
+                 {"max_penetration_m", r.maxPenetration},
+                 {"mean_penetration_m", r.meanPenetration},
+                 {"max_joint_error_m", r.maxJointError}};
+    if (r.pendulum)
+        json["pendulum"] = {{"period_s", r.pendulum->period},
+                            {"exact_period_s", r.pendulum->exact},
+                            {"energy_loss", r.pendulum->energyLoss}};
+    if (r.ballistic)
+        json["ballistic"] = {{"seconds", r.ballistic->seconds},
+                             {"max_error_m", r.ballistic->maxError}};
+    return json;
+}
+
+void print(const AccuracyResult& r) {
+    std::printf("energy       drift %s, injection %s (of weight times extent)\n",
+                number(r.energyDrift).c_str(), number(r.energyInjection).c_str());
+    std::printf("penetration  max %s m, mean at the end %s m\n", number(r.maxPenetration).c_str(),
+                number(r.meanPenetration).c_str());
+    std::printf("joint error  max %s m\n", number(r.maxJointError).c_str());
+    if (r.pendulum)
+        std::printf("pendulum     period %.7f s, exact %.7f s, error %s; energy loss %s %%\n",
+                    r.pendulum->period, r.pendulum->exact,
+                    number(std::abs(r.pendulum->period / r.pendulum->exact - 1.0)).c_str(),
+                    number(100.0 * r.pendulum->energyLoss).c_str());
+    if (r.ballistic)
+        std::printf("ballistic    off the parabola by %s m after %s s\n",
+                    number(r.ballistic->maxError).c_str(), number(r.ballistic->seconds).c_str());
+}
+
+}  // namespace huestep::tools

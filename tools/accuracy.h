@@ -1,0 +1,58 @@
+/// The first measures of accuracy of a run (A1, A3, A4, A5 and A7 of the physics page), printed
+/// beside its times so that speed is never bought with error unseen. Everything is in double, from
+/// definitions and motions alone, so every engine is judged alike.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/scene/measure.h"
+#include "core/world/world.h"
+#include "tools/ballistic.h"
+#include "tools/pendulum.h"
+#include "tools/text.h"
+
+namespace huestep::tools {
+
+struct AccuracyResult {
+    double energyDrift = 0.0;      ///< (E − E₀) / E_scale at the end
+    double energyInjection = 0.0;  ///< largest (E − E₀) / E_scale, ≥ 0
+    double maxPenetration = 0.0;   ///< m, peak
+    double meanPenetration = 0.0;  ///< m, over the overlapping pairs at the end
+    double maxJointError = 0.0;    ///< m, peak
+    std::optional<PendulumResult> pendulum;
+    std::optional<BallisticResult> ballistic;
+};
+
+/// Watches one run. E_scale is the weight of the dynamic bodies times the diagonal of the box
+/// around all centres at the start, plus the kinetic energy then.
+class Accuracy {
+ public:
+    /// `start`: the world of the scene before its first step. A copy gives the definitions that
+    /// motions are judged by: a run with commands that spawn or remove is not for this class.
+    explicit Accuracy(const World& start);
+
+    /// After step number `tick`, counted from 1. The narrow phase in double is run on every tick
+    /// of a small scene and on every 30th of a large one.
+    void watch(std::uint64_t tick, std::span<const BodyMotion> motions, bool touching);
+
+    /// `last`: what the last `watch` saw.
+    AccuracyResult finish(std::span<const BodyMotion> last);
+
+ private:
+    void take(std::span<const BodyMotion> motions);
+
+    World m_definitions;
+    std::uint64_t m_every;       ///< ticks between narrow phases in double
+    double m_scale = 1.0;        ///< J
+    double m_startEnergy = 0.0;  ///< J
+    AccuracyResult m_result;
+    std::optional<Pendulum> m_pendulum;
+    std::optional<Ballistic> m_ballistic;
+};
+
+Json asJson(const AccuracyResult& result);
+void print(const AccuracyResult& result);  ///< lines of text on standard output
+
+}  // namespace huestep::tools

@@ -1,0 +1,53 @@
+#include "tools/ballistic.h"
+
+#include <algorithm>
+
+namespace huestep::tools {
+namespace {
+
+using Vec2d = Vec2T<double>;
+
+constexpr double flight = 1.0;  // s
+
+Vec2d wide(Vec2 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y)};
+}
+
+}  // namespace
+
+std::optional<Ballistic> Ballistic::find(const World& start) {
+    if (!start.joints().empty()) return std::nullopt;
+    Ballistic b;
+    b.m_step = static_cast<double>(start.info().stepSeconds);
+    for (std::size_t i = 0; i < start.bodies().size(); ++i) {
+        const BodyInfo& body = start.bodies()[i];
+        if (!body.dynamic()) continue;
+        if (body.linearDamping > 0.0f) return std::nullopt;
+        const BodyMotion& motion = start.motions()[i];
+        b.m_bodies.push_back({i, wide(motion.position), wide(motion.velocity),
+                              static_cast<double>(body.gravityScale) * wide(start.info().gravity)});
+    }
+    if (b.m_bodies.empty()) return std::nullopt;
+    return b;
+}
+
+void Ballistic::watch(std::span<const BodyMotion> motions, bool touching) {
+    // Half a tick of tolerance: sixty steps of float(1/60) are not one second to the last bit.
+    if (m_touched || m_seconds + 0.5 * m_step > flight) return;
+    m_touched = touching;
+    m_seconds += m_step;
+    const double t = m_seconds;
+    m_result = {t, 0.0};
+    for (const Body& body : m_bodies) {
+        const Vec2d exact = body.position + t * body.velocity + (0.5 * t * t) * body.gravity;
+        const double error = length(wide(motions[body.place].position) - exact);
+        m_result.maxError = std::max(m_result.maxError, error);
+    }
+}
+
+std::optional<BallisticResult> Ballistic::result() const {
+    if (m_touched || m_seconds == 0.0) return std::nullopt;
+    return m_result;
+}
+
+}  // namespace huestep::tools

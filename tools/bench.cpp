@@ -1,0 +1,165 @@
+/// `huestep bench`: engines side by side on the same scenes.
+///
+/// Absolute times drift by a third on a busy machine, so the repeats of all rows of a scene are
+/// interleaved: each row meets the same weather. Errors and hash are taken in a pass of their own,
+/// because measuring between ticks would empty the caches that the ticks are timed with.
+#include "tools/bench.h"
+
+#include <memory>
+
+#include "tools/accuracy.h"
+#include "tools/clock.h"
+#include "tools/command.h"
+#include "tools/engines.h"
+#include "tools/files.h"
+#include "tools/interrupt.h"
+#include "tools/lists.h"
+#include "tools/progress.h"
+#include "tools/scene_source.h"
+
+namespace huestep::tools {
+namespace {
+
+struct Options {
+    std::vector<std::string> scenes = {"pyramid", "many_pyramids", "joint_grid", "tumbler",
+                                       "small"};
+    std::string threads = "1,2";
+    std::string engines = "huestep,box2d";
+    std::uint64_t ticks = 0;  // 0: the scene's own
+    int repeats = 6;
+    std::string csv;
+    bool json = false;
+};
+
+Result<std::vector<std::string>> parseEngines(const std::string& text) {
+    std::vector<std::string> names = splitAtCommas(text);
+    for (const std::string& name : names)
+        if (const Status known = checkEngine(name, benchEngineNames()); !known)
+            return known.error();
+    return names;
+}
+
+/// One row an engine and thread count; one for those that have no threads.
+std::vector<BenchResult> rowsOf(const NamedScene& scene, std::uint64_t ticks,
+                                const std::vector<std::string>& engines,
+                                const std::vector<int>& threads) {
+    std::vector<BenchResult> rows;
+    for (const std::string& engine : engines)
+        for (const int count : threads) {
+            if (!takesThreads(engine) && count != threads.front()) continue;
+            BenchResult row;
+            row.scene = scene.name;
+            row.engine = engine;
+            row.threads = takesThreads(engine) ? count : 1;
+            row.ticks = ticks;
+            rows.push_back(row);
+        }
+    return rows;
+}
+
+Status measureErrors(const NamedScene& scene, BenchResult& row, Progress& progress) {
+    const Result<World> start = World::create(scene.scene);
+    if (!start) return Error{scene.name + ": " + start.error().message};
+    Result<std::unique_ptr<Engine>> engine = makeEngine(row.engine, scene.scene, {row.threads});
+    if (!engine) return engine.error();
+    Accuracy accuracy(*start);
+    for (std::uint64_t tick = 1; tick <= row.ticks && !interrupted(); ++tick) {
+        (*engine)->step();
+        accuracy.watch(tick, (*engine)->motions(), (*engine)->contactCount() > 0);
+        progress.advance();
+    }
+    const AccuracyResult errors = accuracy.finish((*engine)->motions());
+    row.hash = (*engine)->hash();
+    row.maxPenetration = errors.maxPenetration;
+    row.maxJointError = errors.maxJointError;
+    return Done{};
+}
+
+Status measureTime(const NamedScene& scene, BenchResult& row, Progress& progress) {
+    Result<std::unique_ptr<Engine>> engine = makeEngine(row.engine, scene.scene, {row.threads});
+    if (!engine) return engine.error();
+    row.leastByTick.resize(row.ticks, ~std::uint64_t{0});
+    std::uint64_t sum = 0;
+    for (std::uint64_t tick = 0; tick < row.ticks && !interrupted(); ++tick) {
+        const std::uint64_t begin = nanoseconds();
+        (*engine)->step();
+        const std::uint64_t time = nanoseconds() - begin;
+        sum += time;
+        row.leastByTick[tick] = std::min(row.leastByTick[tick], time);
+        progress.advance();
+    }
+    row.repeats.push_back(static_cast<double>(sum) * 1e-6 / static_cast<double>(row.ticks));
+    row.sameHash = row.sameHash && (*engine)->hash() == row.hash;
+    return Done{};
+}
+
+Status benchScene(const NamedScene& scene, int repeats, std::vector<BenchResult>& rows) {
+    const std::uint64_t runs = rows.size() * static_cast<std::uint64_t>(repeats + 1);
+    Progress progress(scene.name, runs * rows.front().ticks);
+    for (BenchResult& row : rows)
+        if (const Status done = measureErrors(scene, row, progress); !done) return done;
+    for (int repeat = 0; repeat < repeats; ++repeat)
+        for (BenchResult& row : rows)
+            if (const Status done = measureTime(scene, row, progress); !done) return done;
+    return Done{};
+}
+
+Answer bench(const Options& options) {
+    const Result<std::vector<int>> threads = parseThreads(options.threads);
+    if (!threads) return threads.error();
+    const Result<std::vector<std::string>> engines = parseEngines(options.engines);
+    if (!engines) return engines.error();
+    std::vector<NamedScene> scenes;
+    for (const std::string& name : options.scenes) {
+        Result<NamedScene> scene = loadScene(name);
+        if (!scene) return scene.error();
+        scenes.push_back(std::move(scene).value());
+    }
+
+    std::vector<BenchResult> results;
+    bool same = true;
+    for (const NamedScene& scene : scenes) {
+        const std::uint64_t ticks = options.ticks != 0 ? options.ticks : scene.ticks;
+        std::vector<BenchResult> rows = rowsOf(scene, ticks, *engines, *threads);
+        const Status done = benchScene(scene, options.repeats, rows);
+        if (!done) return done.error();
+        // A scene that Ctrl-C cut short has no figures worth showing; those before it have.
+        if (interrupted()) break;
+        for (BenchResult& row : rows) {
+            same = same && row.sameHash;
+            results.push_back(std::move(row));
+        }
+    }
+    if (!options.csv.empty()) {
+        const std::string csv = benchCsv(results);
+        const Status written = writeFile(options.csv, std::as_bytes(std::span(csv)));
+        if (!written) return written.error();
+    }
+    if (options.json)
+        print(benchJson(results));
+    else
+        printBench(results);
+    return same && !interrupted() ? Exit::Done : Exit::Differs;
+}
+
+}  // namespace
+
+void addBench(Menu& menu) {
+    const auto o = std::make_shared<Options>();
+    CLI::App* sub = menu.add("bench", "Runs engines side by side; prints times, errors, hashes.",
+                             "huestep bench pyramid tumbler --threads 1,2 --engine huestep,box2d",
+                             [o] { return bench(*o); });
+    sub->add_option("SCENE", o->scenes, "Scenes (default: the benchmark scenes)");
+    sub->add_option("--threads", o->threads, "Thread counts (default: 1,2)");
+    std::string names;
+    for (const std::string& name : benchEngineNames()) names += (names.empty() ? "" : ", ") + name;
+    sub->add_option("--engine", o->engines, "Of " + names + " (default: huestep,box2d)");
+    sub->add_option("--ticks", o->ticks, "Steps to take (default: each scene's own)")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+    sub->add_option("--repeat", o->repeats, "Timed runs of each row (default: 6)")
+        ->check(CLI::Range(1, 1000));
+    sub->add_option("--csv", o->csv, "Also write the rows to this file");
+    sub->add_flag("--json", o->json, "Print one JSON document");
+}
+
+}  // namespace huestep::tools

@@ -1,0 +1,60 @@
+#include "tools/engines.h"
+
+#include <algorithm>
+
+#include "core/box2d/engine.h"
+#ifdef HUESTEP_HAS_BOX2D3
+#include "core/box2d/engine3.h"
+#endif
+
+namespace huestep::tools {
+
+HuestepEngine::HuestepEngine(World world, const EngineSetup& setup)
+    : m_world(std::move(world)),
+      m_executor(std::make_unique<Executor>(setup.threads, 0, setup.clock)),
+      m_resources{m_executor.get(), setup.simd, setup.clock} {}
+
+void HuestepEngine::step() {
+    m_world.step({}, m_resources);
+}
+
+std::vector<BodyMotion> HuestepEngine::motions() const {
+    return {m_world.motions().begin(), m_world.motions().end()};
+}
+
+std::vector<std::string> engineNames() {
+    return {"huestep", "box2d"};
+}
+
+std::vector<std::string> benchEngineNames() {
+    std::vector<std::string> names = engineNames();
+#ifdef HUESTEP_HAS_BOX2D3
+    names.emplace_back("box2d3");
+#endif
+    return names;
+}
+
+Status checkEngine(const std::string& name, const std::vector<std::string>& names) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) return Done{};
+    std::string list;
+    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+    return Error{"--engine: there is no '" + name + "' here; there is " + list};
+}
+
+bool takesThreads(const std::string& name) {
+    return name != "box2d";
+}
+
+Result<std::unique_ptr<Engine>> makeEngine(const std::string& name, const Scene& scene,
+                                           const EngineSetup& setup,
+                                           std::vector<std::string>* notes) {
+#ifdef HUESTEP_HAS_BOX2D3
+    if (name == "box2d3") return makeBox2d3Engine(scene, setup.threads);
+#endif
+    if (name == "box2d") return makeBox2dEngine(scene, setup.order, notes);
+    Result<World> world = World::create(scene);
+    if (!world) return world.error();
+    return std::unique_ptr<Engine>(std::make_unique<HuestepEngine>(std::move(*world), setup));
+}
+
+}  // namespace huestep::tools

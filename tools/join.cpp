@@ -1,0 +1,147 @@
+/// `huestep join`: a client without a screen.
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+#include <random>
+
+#include "client/player.h"
+#include "tools/clock.h"
+#include "tools/command.h"
+#include "tools/fingerprint.h"
+#include "tools/text.h"
+
+namespace huestep::tools {
+namespace {
+
+struct Options {
+    std::string address;
+    std::string session;
+    std::string bot = "wander";
+    std::uint64_t ticks = 0;
+    bool json = false;
+};
+
+Result<std::unique_ptr<client::Bot>> makeBot(const std::string& text) {
+    if (text == "idle") return client::makeIdleBot();
+    if (text == "wander") {
+        const std::uint64_t seed = std::random_device{}();
+        std::fprintf(stderr, "wander: seed %llu\n", static_cast<unsigned long long>(seed));
+        return client::makeWanderBot(seed);
+    }
+    const std::string prefix = "script:";
+    if (text.starts_with(prefix)) return client::readScript(text.substr(prefix.size()));
+    return Error{"--bot: '" + text + "' is none of wander, idle and script:FILE"};
+}
+
+double perSecond(std::uint64_t amount, double seconds) {
+    return seconds > 0.0 ? static_cast<double>(amount) / seconds : 0.0;
+}
+
+void showProgress(const client::Statistics& now) {
+    std::fprintf(stderr, "\rtick %llu, %llu hashes compared, mismatches: %llu\033[K",
+                 static_cast<unsigned long long>(now.tick),
+                 static_cast<unsigned long long>(now.hashesCompared),
+                 static_cast<unsigned long long>(now.mismatches));
+}
+
+Json asJson(const Options& options, const client::Statistics& s, double seconds) {
+    Json json = {{"address", options.address},
+                 {"session", options.session},
+                 {"player", s.player},
+                 {"seconds", seconds},
+                 {"tick", s.tick},
+                 {"hash", hex(s.root)},
+                 {"ticks", s.ticks},
+                 {"hashes_compared", s.hashesCompared},
+                 {"mismatches", s.mismatches},
+                 {"corrections", s.corrections},
+                 {"snapshots", s.snapshots},
+                 {"connections", s.connections},
+                 {"resumes", s.resumes},
+                 {"rolled_back_ticks", s.rolledBack},
+                 {"committed_ticks_lost", s.committedLost},
+                 {"commands",
+                  {{"sent", s.commandsSent},
+                   {"resent", s.commandsResent},
+                   {"seen", s.commandsSeen},
+                   {"rejected", s.commandsRejected}}},
+                 {"bytes", {{"in", s.bytesIn}, {"out", s.bytesOut}}},
+                 {"bytes_a_second",
+                  {{"in", perSecond(s.bytesIn, seconds)}, {"out", perSecond(s.bytesOut, seconds)}}},
+                 {"latency_s", {{"median", s.latencyMedian}, {"p99", s.latencyP99}}}};
+    if (s.lastDesync)
+        json["last_desync"] = {{"tick", s.lastDesync->tick},
+                               {"body", s.lastDesync->body},
+                               {"field", s.lastDesync->field},
+                               {"here", s.lastDesync->here},
+                               {"there", s.lastDesync->there}};
+    return json;
+}
+
+void printText(const client::Statistics& s, double seconds) {
+    const auto n = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::printf("player       %u, tick %llu, hash %s\n", s.player, n(s.tick), hex(s.root).c_str());
+    std::printf("latency      median %s ms, p99 %s ms\n", number(1e3 * s.latencyMedian).c_str(),
+                number(1e3 * s.latencyP99).c_str());
+    std::printf("corrections  %llu; snapshots %llu, resumes %llu\n", n(s.corrections),
+                n(s.snapshots), n(s.resumes));
+    std::printf("commands     %llu sent, %llu seen, %llu rejected\n", n(s.commandsSent),
+                n(s.commandsSeen), n(s.commandsRejected));
+    std::printf("bytes        in %.0f a second, out %.0f a second\n", perSecond(s.bytesIn, seconds),
+                perSecond(s.bytesOut, seconds));
+    if (s.lastDesync)
+        std::printf("desync       tick %llu body %u %s: %s here, %s there\n", n(s.lastDesync->tick),
+                    s.lastDesync->body, s.lastDesync->field.c_str(), s.lastDesync->here.c_str(),
+                    s.lastDesync->there.c_str());
+    std::printf(
+        "ticks: %llu, hashes compared: %llu, mismatches: %llu, bytes in: %llu, bytes out: "
+        "%llu, seconds: %.2f\n",
+        n(s.ticks), n(s.hashesCompared), n(s.mismatches), n(s.bytesIn), n(s.bytesOut), seconds);
+}
+
+Answer join(const Options& options) {
+    Result<std::unique_ptr<client::Bot>> bot = makeBot(options.bot);
+    if (!bot) return bot.error();
+    const Result<protocol::Fingerprint> fingerprint = selfTest();
+    if (!fingerprint) return fingerprint.error();
+
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    client::PlayerConfig config;
+    config.address = options.address;
+    config.session = options.session;
+    config.fingerprint = *fingerprint;
+    config.bot = std::move(bot).value();
+    config.ticks = options.ticks;
+    if (terminal) config.onProgress = showProgress;
+    config.onNotice = [terminal](const std::string& sentence) {
+        std::fprintf(stderr, "%s%s\n", terminal ? "\r\033[K" : "", sentence.c_str());
+    };
+    const std::uint64_t begin = nanoseconds();
+    const Result<client::Statistics> played = client::play(std::move(config));
+    const double seconds = static_cast<double>(nanoseconds() - begin) * 1e-9;
+    if (terminal) std::fputs("\r\033[K", stderr);
+    if (!played) return played.error();
+    if (options.json)
+        print(asJson(options, *played, seconds));
+    else
+        printText(*played, seconds);
+    return played->mismatches == 0 && played->committedLost == 0 ? Exit::Done : Exit::Differs;
+}
+
+}  // namespace
+
+void addJoin(Menu& menu) {
+    const auto o = std::make_shared<Options>();
+    CLI::App* sub = menu.add("join", "A client without a screen: plays and verifies every hash.",
+                             "huestep join 127.0.0.1:7777 --session play --bot wander --ticks 600",
+                             [o] { return join(*o); });
+    sub->add_option("HOST:PORT", o->address, "Where the server listens")->required();
+    sub->add_option("--session", o->session, "Which session to play")->required();
+    sub->add_option("--bot", o->bot, "wander, idle or script:FILE (default: wander)");
+    sub->add_option("--ticks", o->ticks, "Leave after so many ticks (default: at Ctrl-C)")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+    sub->add_flag("--json", o->json, "Print one JSON document");
+}
+
+}  // namespace huestep::tools

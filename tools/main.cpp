@@ -1,0 +1,66 @@
+/// `huestep`: one program, one subcommand a file beside this one.
+#include <cstdio>
+#include <exception>
+
+#include "tools/command.h"
+#include "tools/floats.h"
+#include "tools/interrupt.h"
+
+namespace huestep::tools {
+
+CLI::App* Menu::add(const std::string& name, const std::string& purpose, const std::string& example,
+                    Task action) {
+    CLI::App* sub = app.add_subcommand(name, purpose);
+    sub->footer("Example:\n  " + example);
+    sub->callback([this, action = std::move(action)] { chosen = action; });
+    return sub;
+}
+
+namespace {
+
+/// One sentence on standard error, as the command line's page promises.
+int badUse(const std::string& sentence) {
+    std::fprintf(stderr, "huestep: %s\n", sentence.c_str());
+    return static_cast<int>(Exit::BadUse);
+}
+
+int runProgram(int count, char** words) {
+    if (const Status floats = checkFloats(); !floats) return badUse(floats.error().message);
+    CLI::App app{"Deterministic 2D physics, hosted in lockstep."};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "huestep " HUESTEP_VERSION);
+    app.footer(
+        "Example:\n  huestep run pyramid:base=20 --ticks 300 --threads 2\n"
+        "Each subcommand answers --help with an example of its own.");
+    Menu menu{app, {}};
+    addScenes(menu);
+    addRun(menu);
+    addVerify(menu);
+    addServe(menu);
+    addJoin(menu);
+    addReplay(menu);
+    addDiff(menu);
+    addBench(menu);
+    try {
+        app.parse(count, words);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& wrong) {
+        return badUse(wrong.what());
+    }
+    catchInterrupts();
+    const Answer answer = menu.chosen();
+    if (!answer) return badUse(answer.error().message);
+    return static_cast<int>(*answer);
+}
+
+}  // namespace
+}  // namespace huestep::tools
+
+int main(int count, char** words) {
+    try {
+        return huestep::tools::runProgram(count, words);
+    } catch (const std::exception& failure) {
+        return huestep::tools::badUse(failure.what());
+    }
+}

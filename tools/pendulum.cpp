@@ -1,0 +1,99 @@
+#include "tools/pendulum.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace huestep::tools {
+namespace {
+
+using Vec2d = Vec2T<double>;
+
+Vec2d wide(Vec2 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y)};
+}
+
+/// The arithmetic-geometric mean by its own iteration, which converges quadratically.
+double agm(double a, double b) {
+    while (std::abs(a - b) > 1e-15 * a) {
+        const double mean = 0.5 * (a + b);
+        b = std::sqrt(a * b);
+        a = mean;
+    }
+    return a;
+}
+
+bool swingsFreely(const BodyInfo& body, const BodyMotion& motion) {
+    const bool undamped = body.linearDamping == 0.0f && body.angularDamping == 0.0f;
+    const bool atRest = motion.velocity == Vec2{} && motion.angularVelocity == 0.0f;
+    return body.dynamic() && undamped && atRest;
+}
+
+}  // namespace
+
+std::optional<Pendulum> Pendulum::find(const World& start) {
+    if (start.joints().size() != 1 || start.bodies().size() != 2) return std::nullopt;
+    const JointInfo& joint = start.joints()[0];
+    const std::uint32_t parts = JointInfo::spring | JointInfo::limit | JointInfo::motor;
+    if (joint.kind() != JointKind::Revolute || joint.has(parts)) return std::nullopt;
+
+    const std::size_t bob = start.bodies()[0].dynamic() ? 0 : 1;
+    const std::size_t hook = 1 - bob;
+    const BodyInfo& body = start.bodies()[bob];
+    const BodyMotion& motion = start.motions()[bob];
+    if (start.bodies()[hook].type() != BodyType::Static || !swingsFreely(body, motion))
+        return std::nullopt;
+    const bool bobIsA = joint.bodyA == body.id;
+
+    Pendulum p;
+    p.m_bob = bob;
+    p.m_step = static_cast<double>(start.info().stepSeconds);
+    p.m_mass = static_cast<double>(body.mass);
+    p.m_inertia = static_cast<double>(body.inertia);
+    p.m_length = length(wide(bobIsA ? joint.anchorA : joint.anchorB));
+    const Vec2 anchor = bobIsA ? joint.anchorB : joint.anchorA;
+    p.m_pivot = wide(transform(start.motions()[hook].pose(), anchor));
+    const Vec2d gravity = static_cast<double>(body.gravityScale) * wide(start.info().gravity);
+    p.m_gravity = length(gravity);
+    p.m_down = normalized(gravity);
+    if (!(p.m_length > 0.0) || !(p.m_gravity > 0.0)) return std::nullopt;
+
+    p.m_lastAngle = p.angle(motion);
+    p.m_startEnergy = p.energy(motion);
+    const double equivalent = (p.m_inertia / p.m_mass + p.m_length * p.m_length) / p.m_length;
+    p.m_exact = 2.0 * std::numbers::pi * std::sqrt(equivalent / p.m_gravity) /
+                agm(1.0, std::cos(0.5 * p.m_lastAngle));
+    return p;
+}
+
+double Pendulum::angle(const BodyMotion& bob) const {
+    const Vec2d arm = wide(bob.position) - m_pivot;
+    return std::atan2(cross(m_down, arm), dot(m_down, arm));
+}
+
+double Pendulum::energy(const BodyMotion& bob) const {
+    const auto spin = static_cast<double>(bob.angularVelocity);
+    const double height = m_length - dot(m_down, wide(bob.position) - m_pivot);
+    return m_mass * m_gravity * height + 0.5 * m_mass * lengthSquared(wide(bob.velocity)) +
+           0.5 * m_inertia * spin * spin;
+}
+
+void Pendulum::watch(std::span<const BodyMotion> motions) {
+    const double now = angle(motions[m_bob]);
+    // At the lowest point the angle has no second derivative, so a straight line between two ticks
+    // finds the crossing to third order. Far from it a change of sign is the jump of atan2 at ±π.
+    const bool low = std::abs(now) < 0.5 * std::numbers::pi;
+    if (low && (now < 0.0) != (m_lastAngle < 0.0))
+        m_crossings.push_back(m_seconds + m_step * m_lastAngle / (m_lastAngle - now));
+    m_lastAngle = now;
+    m_seconds += m_step;
+}
+
+std::optional<PendulumResult> Pendulum::result(std::span<const BodyMotion> last) const {
+    if (m_crossings.size() < 3) return std::nullopt;
+    const std::size_t swings = (m_crossings.size() - 1) / 2;
+    const double time = m_crossings[2 * swings] - m_crossings[0];
+    return PendulumResult{time / static_cast<double>(swings), m_exact,
+                          (m_startEnergy - energy(last[m_bob])) / m_startEnergy};
+}
+
+}  // namespace huestep::tools

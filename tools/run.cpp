@@ -1,0 +1,125 @@
+/// `huestep run`: steps a scene without a network.
+#include <cstdio>
+#include <memory>
+
+#include "tools/accuracy.h"
+#include "tools/clock.h"
+#include "tools/command.h"
+#include "tools/engines.h"
+#include "tools/files.h"
+#include "tools/interrupt.h"
+#include "tools/lists.h"
+#include "tools/progress.h"
+#include "tools/run_report.h"
+#include "tools/scene_source.h"
+
+namespace huestep::tools {
+namespace {
+
+struct Options {
+    std::string scene;
+    std::string engine = "huestep";
+    std::uint64_t ticks = 0;  // 0: the scene's own
+    int threads = 1;
+    std::string simd = "auto";
+    std::uint32_t substeps = 0;   // 0: the scene's own
+    std::uint64_t hashEvery = 0;  // 0: never
+    std::string snapshot;
+    bool json = false;
+};
+
+Status checkOptions(const Options& o) {
+    if (const Status known = checkEngine(o.engine, engineNames()); !known) return known;
+    if (o.engine == "huestep") return Done{};
+    if (o.threads != 1 || o.simd != "auto")
+        return Error{"--threads and --simd: " + o.engine +
+                     " has one thread and its own arithmetic"};
+    if (!o.snapshot.empty())
+        return Error{"--snapshot: only a world of huestep has a snapshot, not one of " + o.engine};
+    return Done{};
+}
+
+/// Takes the ticks, each timed; what looks at the motions between them is not.
+void stepAll(Engine& engine, const Options& options, Accuracy& accuracy, RunReport& report) {
+    const auto* huestep = dynamic_cast<const HuestepEngine*>(&engine);
+    Progress progress("stepping", report.ticksAsked);
+    std::vector<BodyMotion> motions = engine.motions();
+    while (report.ticks < report.ticksAsked && !interrupted()) {
+        const std::uint64_t begin = nanoseconds();
+        engine.step();
+        report.tickNanoseconds.push_back(nanoseconds() - begin);
+        ++report.ticks;
+        motions = engine.motions();
+        accuracy.watch(report.ticks, motions, engine.contactCount() > 0);
+        if (huestep != nullptr) report.add(huestep->world().report());
+        if (options.hashEvery != 0 && report.ticks % options.hashEvery == 0)
+            report.hashes.push_back(
+                {report.ticks, engine.hash(), huestep ? huestep->world().fullRoot() : 0});
+        progress.advance();
+    }
+    report.accuracy = accuracy.finish(motions);
+}
+
+Answer run(const Options& options) {
+    if (const Status fine = checkOptions(options); !fine) return fine.error();
+    const Result<Simd> simd = parseSimd(options.simd);
+    if (!simd) return simd.error();
+    Result<NamedScene> named = loadScene(options.scene);
+    if (!named) return named.error();
+    Scene& scene = named->scene;
+    if (options.substeps != 0) scene.substeps = options.substeps;
+
+    const Result<World> start = World::create(scene);
+    if (!start) return Error{options.scene + ": " + start.error().message};
+    std::vector<std::string> notes;
+    Result<std::unique_ptr<Engine>> engine =
+        makeEngine(options.engine, scene, {options.threads, *simd, {}, nanoseconds}, &notes);
+    if (!engine) return engine.error();
+    for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+
+    RunReport report;
+    report.scene = options.scene;
+    report.engine = options.engine;
+    report.threads = options.threads;
+    report.simd = std::string(nameOf(*simd));
+    report.ticksAsked = options.ticks != 0 ? options.ticks : named->ticks;
+    report.stepSeconds = static_cast<double>(scene.stepSeconds);
+    Accuracy accuracy(*start);
+    stepAll(**engine, options, accuracy, report);
+    report.close(**engine);
+
+    if (!options.snapshot.empty()) {
+        const auto& world = static_cast<const HuestepEngine&>(**engine).world();
+        if (const Status written = writeFile(options.snapshot, world.save()); !written)
+            return written.error();
+    }
+    if (options.json)
+        print(report.asJson());
+    else
+        report.print();
+    return Exit::Done;
+}
+
+}  // namespace
+
+void addRun(Menu& menu) {
+    const auto o = std::make_shared<Options>();
+    CLI::App* sub =
+        menu.add("run", "Steps a scene without a network; prints hash, times, errors.",
+                 "huestep run pyramid:base=20 --ticks 300 --threads 2", [o] { return run(*o); });
+    sub->add_option("SCENE", o->scene, "Built-in scene, as in pyramid:base=20, or a scene file")
+        ->required();
+    sub->add_option("--engine", o->engine, "Who steps it (default: huestep)");
+    sub->add_option("--ticks", o->ticks, "Steps to take (default: the scene's own)")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+    sub->add_option("--threads", o->threads, "Threads, 1 to 64 (default: 1)")
+        ->check(CLI::Range(1, maxThreads));
+    sub->add_option("--simd", o->simd, "auto, scalar, sse2, avx2 or avx512 (default: auto)");
+    sub->add_option("--substeps", o->substeps, "Substeps a tick (default: the scene's own)")
+        ->check(CLI::Range(1, 64));
+    sub->add_option("--hash-every", o->hashEvery, "Print the hashes after every K ticks");
+    sub->add_option("--snapshot", o->snapshot, "Write the state after the last tick to this file");
+    sub->add_flag("--json", o->json, "Print one JSON document");
+}
+
+}  // namespace huestep::tools

@@ -1,0 +1,165 @@
+#include "tools/run_report.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "tools/clock.h"
+#include "tools/engines.h"
+#include "tools/statistics.h"
+
+namespace huestep::tools {
+namespace {
+
+constexpr std::size_t stageCount = static_cast<std::size_t>(Stage::Count);
+constexpr double nsPerMs = 1.0e6;
+
+std::vector<double> milliseconds(const std::vector<std::uint64_t>& nanoseconds) {
+    std::vector<double> ms(nanoseconds.size());
+    std::transform(nanoseconds.begin(), nanoseconds.end(), ms.begin(),
+                   [](std::uint64_t ns) { return static_cast<double>(ns) / nsPerMs; });
+    return ms;
+}
+
+double share(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+StateCost measureState(const World& world) {
+    constexpr int repeats = 7;
+    StateCost cost;
+    cost.snapshotBytes = world.save().size();
+    cost.motionRootNs = cost.fullRootNs = 1e300;
+    const auto bodies = static_cast<double>(std::max<std::size_t>(world.bodies().size(), 1));
+    for (int i = 0; i < repeats; ++i) {
+        World copy(world);
+        copy.dropAccelerators();
+        const std::uint64_t begin = nanoseconds();
+        const std::uint64_t motion = copy.motionRoot();
+        const std::uint64_t middle = nanoseconds();
+        const std::uint64_t full = copy.fullRoot();
+        const std::uint64_t end = nanoseconds();
+        // Of use to the reader of the clock only if the hashes were really made.
+        if (motion != world.motionRoot() || full != world.fullRoot()) continue;
+        cost.motionRootNs =
+            std::min(cost.motionRootNs, static_cast<double>(middle - begin) / bodies);
+        cost.fullRootNs = std::min(cost.fullRootNs, static_cast<double>(end - middle) / bodies);
+    }
+    return cost;
+}
+
+void RunReport::add(const StepReport& step) {
+    if (!inside) inside.emplace();
+    inside->last = step;
+    for (std::size_t s = 0; s < stageCount; ++s) inside->stageNanoseconds[s] += step.nanoseconds[s];
+    inside->constraints += step.contacts + step.joints;
+    inside->overflow += step.overflow;
+    inside->mostColours = std::max(inside->mostColours, step.colours);
+}
+
+void RunReport::close(const Engine& peer) {
+    motionRoot = peer.hash();
+    contacts = peer.contactCount();
+    bodies = peer.motions().size();
+    const auto* huestep = dynamic_cast<const HuestepEngine*>(&peer);
+    if (huestep == nullptr) return;
+    if (!inside) inside.emplace();
+    inside->fullRoot = huestep->world().fullRoot();
+    inside->jointCount = huestep->world().joints().size();
+    inside->waited = huestep->executor().waited();
+    inside->state = measureState(huestep->world());
+}
+
+Json RunReport::asJson() const {
+    const std::vector<double> ms = milliseconds(tickNanoseconds);
+    Json json = {{"scene", scene}, {"engine", engine}, {"threads", threads},
+                 {"simd", simd},   {"ticks", ticks},   {"interrupted", ticks < ticksAsked}};
+    json["hash"] = {{"motion", hex(motionRoot)}};
+    if (inside) json["hash"]["full"] = hex(inside->fullRoot);
+    json["ms_per_tick"] = {{"median", quantile(ms, 0.5)}, {"p99", quantile(ms, 0.99)}};
+    json["bodies"] = bodies;
+    json["contacts"] = contacts;
+    json["accuracy"] = tools::asJson(accuracy);
+    Json every = Json::array();
+    for (const TickHash& h : hashes) {
+        Json row = {{"tick", h.tick}, {"motion", hex(h.motion)}};
+        if (inside) row["full"] = hex(h.full);
+        every.push_back(row);
+    }
+    json["hashes"] = every;
+    if (!inside) return json;
+
+    Json stages = Json::object();
+    for (std::size_t s = 0; s < stageCount; ++s)
+        stages[std::string(nameOf(static_cast<Stage>(s)))] =
+            share(inside->stageNanoseconds[s], ticks) / nsPerMs;
+    json["ms_by_stage"] = stages;
+    json["joints"] = inside->jointCount;
+    json["awake_bodies"] = inside->last.awakeBodies;
+    json["pairs"] = inside->last.pairs;
+    json["recycled"] = inside->last.recycled;
+    json["islands"] = inside->last.islands;
+    json["batches"] = inside->last.batches;
+    json["colours"] = inside->mostColours;
+    json["overflow_share"] = share(inside->overflow, inside->constraints);
+    json["waited_ms"] = milliseconds(inside->waited);
+    json["state"] = {{"bytes_a_body", sizeof(BodyMotion)},
+                     {"bytes_a_contact", sizeof(ContactState)},
+                     {"bytes_a_joint", sizeof(JointImpulses)},
+                     {"definition_bytes_a_body", sizeof(BodyInfo)},
+                     {"definition_bytes_a_shape", sizeof(ShapeInfo)},
+                     {"definition_bytes_a_joint", sizeof(JointInfo)},
+                     {"snapshot_bytes", inside->state.snapshotBytes},
+                     {"motion_root_ns_a_body", inside->state.motionRootNs},
+                     {"full_root_ns_a_body", inside->state.fullRootNs}};
+    return json;
+}
+
+void RunReport::print() const {
+    const std::vector<double> ms = milliseconds(tickNanoseconds);
+    for (const TickHash& h : hashes) {
+        const std::string full = inside ? "  full " + hex(h.full) : "";
+        std::printf("tick %llu  motion %s%s\n", static_cast<unsigned long long>(h.tick),
+                    hex(h.motion).c_str(), full.c_str());
+    }
+    std::printf("scene        %s on %s, %d thread%s%s\n", scene.c_str(), engine.c_str(), threads,
+                threads == 1 ? "" : "s", inside ? (", simd " + simd).c_str() : "");
+    std::printf("tick         %llu%s\n", static_cast<unsigned long long>(ticks),
+                ticks < ticksAsked ? " (stopped before the end)" : "");
+    std::printf("hash         motion %s%s\n", hex(motionRoot).c_str(),
+                inside ? ("  full " + hex(inside->fullRoot)).c_str() : "");
+    std::printf("ms a tick    median %s  p99 %s\n", number(quantile(ms, 0.5)).c_str(),
+                number(quantile(ms, 0.99)).c_str());
+    std::printf("bodies       %llu\n", static_cast<unsigned long long>(bodies));
+    std::printf("contacts     %u\n", contacts);
+    if (inside) printInside();
+    tools::print(accuracy);
+}
+
+void RunReport::printInside() const {
+    const RunInside& in = *inside;
+    std::string stages;
+    for (std::size_t s = 0; s < stageCount; ++s)
+        stages += (s == 0 ? "" : "  ") + std::string(nameOf(static_cast<Stage>(s))) + " " +
+                  number(share(in.stageNanoseconds[s], ticks) / nsPerMs);
+    std::string waits;
+    for (const double wait : milliseconds(in.waited)) waits += " " + number(wait);
+    std::printf("by stage, ms %s\n", stages.c_str());
+    std::printf("awake        %u bodies, %u joints of %zu, %u pairs, %u contacts recycled\n",
+                in.last.awakeBodies, in.last.joints, in.jointCount, in.last.pairs,
+                in.last.recycled);
+    std::printf("graph        %u islands, %u batches, at most %u colours, overflow %s %%\n",
+                in.last.islands, in.last.batches, in.mostColours,
+                number(100.0 * share(in.overflow, in.constraints)).c_str());
+    std::printf("waited, ms  %s (by thread)\n", waits.c_str());
+    std::printf(
+        "state        %zu B a body, %zu a contact, %zu a joint; definitions %zu a body, "
+        "%zu a shape, %zu a joint; snapshot %zu B\n",
+        sizeof(BodyMotion), sizeof(ContactState), sizeof(JointImpulses), sizeof(BodyInfo),
+        sizeof(ShapeInfo), sizeof(JointInfo), in.state.snapshotBytes);
+    std::printf("hash cost    motion root %s ns a body, full root %s ns a body\n",
+                number(in.state.motionRootNs).c_str(), number(in.state.fullRootNs).c_str());
+}
+
+}  // namespace huestep::tools

@@ -1,0 +1,72 @@
+/// What a run says of itself: as text and as JSON.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/engine.h"
+#include "core/world/world.h"
+#include "tools/accuracy.h"
+#include "tools/text.h"
+
+namespace huestep::tools {
+
+/// Bytes of state and what a hash of it costs, measured on a world as it is.
+struct StateCost {
+    std::size_t snapshotBytes = 0;
+    double motionRootNs = 0.0;  ///< ns a body
+    double fullRootNs = 0.0;    ///< ns a body
+};
+
+/// The least of a few measurements of each hash, on a copy whose hashes nothing has asked for.
+StateCost measureState(const World& world);
+
+/// What only Huestep says of a run.
+struct RunInside {
+    std::uint64_t fullRoot = 0;
+    StepReport last;
+    std::array<std::uint64_t, static_cast<std::size_t>(Stage::Count)> stageNanoseconds{};
+    std::uint64_t constraints = 0;  ///< sum over ticks
+    std::uint64_t overflow = 0;     ///< sum over ticks
+    std::uint32_t mostColours = 0;
+    std::size_t jointCount = 0;
+    std::vector<std::uint64_t> waited;  ///< ns, by worker
+    StateCost state;
+};
+
+struct RunReport {
+    struct TickHash {
+        std::uint64_t tick = 0;
+        std::uint64_t motion = 0;
+        std::uint64_t full = 0;  ///< 0 of a peer, which has no state of ours
+    };
+
+    std::string scene;
+    std::string engine;
+    std::string simd;
+    int threads = 1;
+    double stepSeconds = 0.0;
+    std::uint64_t ticksAsked = 0;
+    std::uint64_t ticks = 0;  ///< taken; fewer than asked after Ctrl-C
+    std::vector<std::uint64_t> tickNanoseconds;
+    std::vector<TickHash> hashes;
+    std::uint64_t motionRoot = 0;
+    std::uint64_t bodies = 0;
+    std::uint32_t contacts = 0;
+    AccuracyResult accuracy;
+
+    std::optional<RunInside> inside;
+
+    void add(const StepReport& step);  ///< after each step of Huestep
+    void close(const Engine& engine);  ///< after the last step
+    [[nodiscard]] Json asJson() const;
+    void print() const;
+
+ private:
+    void printInside() const;
+};
+
+}  // namespace huestep::tools

@@ -1,0 +1,62 @@
+/// `huestep scenes`: the built-in scenes.
+#include <memory>
+
+#include "core/scene/catalog.h"
+#include "tools/command.h"
+#include "tools/text.h"
+
+namespace huestep::tools {
+namespace {
+
+std::size_t bodiesOf(const CatalogEntry& entry) {
+    const Result<Scene> scene = sceneFromCatalog(entry.name);
+    return scene ? scene->bodies.size() : 0;
+}
+
+Json asJson(const CatalogEntry& entry) {
+    Json parameters = Json::array();
+    for (const SceneParameter& p : entry.parameters)
+        parameters.push_back({{"name", p.name},
+                              {"standard", p.standard},
+                              {"low", p.low},
+                              {"high", p.high},
+                              {"meaning", p.meaning}});
+    return {{"name", entry.name},
+            {"purpose", entry.purpose},
+            {"bodies", bodiesOf(entry)},
+            {"ticks", entry.ticks},
+            {"parameters", parameters}};
+}
+
+Answer showScenes(bool json) {
+    if (json) {
+        Json scenes = Json::array();
+        for (const CatalogEntry& entry : sceneCatalog()) scenes.push_back(asJson(entry));
+        print(Json{{"scenes", scenes}});
+        return Exit::Done;
+    }
+    Table table({"scene", "bodies", "ticks", "parameters", "for"});
+    for (const CatalogEntry& entry : sceneCatalog()) {
+        std::string parameters;
+        for (const SceneParameter& p : entry.parameters) {
+            if (!parameters.empty()) parameters += ", ";
+            parameters += std::string(p.name) + "=" + number(p.standard) + " (" + number(p.low) +
+                          " to " + number(p.high) + ")";
+        }
+        table.add({std::string(entry.name), std::to_string(bodiesOf(entry)),
+                   std::to_string(entry.ticks), parameters, std::string(entry.purpose)});
+    }
+    table.print();
+    return Exit::Done;
+}
+
+}  // namespace
+
+void addScenes(Menu& menu) {
+    const auto json = std::make_shared<bool>(false);
+    CLI::App* sub = menu.add("scenes", "Lists the built-in scenes, their parameters and purpose.",
+                             "huestep scenes --json", [json] { return showScenes(*json); });
+    sub->add_flag("--json", *json, "Print one JSON document");
+}
+
+}  // namespace huestep::tools

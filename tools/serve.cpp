@@ -1,0 +1,75 @@
+/// `huestep serve`: hosts sessions.
+#include <cstdio>
+#include <memory>
+
+#include "server/host.h"
+#include "tools/command.h"
+#include "tools/fingerprint.h"
+#include "tools/scene_source.h"
+#include "tools/serve_config.h"
+
+namespace huestep::tools {
+namespace {
+
+Result<server::SessionSpec> parseSession(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+        return Error{"--session: '" + text + "' is not NAME=SCENE, as in play=sandbox"};
+    Result<NamedScene> scene = loadScene(text.substr(equals + 1));
+    if (!scene) return Error{"--session " + text + ": " + scene.error().message};
+    return server::SessionSpec{text.substr(0, equals), std::move(scene->scene)};
+}
+
+Result<server::HostConfig> configOf(const ServeOptions& options) {
+    server::HostConfig config;
+    if (!options.listen.empty()) config.listen = options.listen;
+    if (!options.data.empty()) config.data = options.data;
+    config.open = options.open;
+    if (options.sessions.empty())
+        return Error{"--session: give at least one, as in --session play=sandbox"};
+    for (const std::string& text : options.sessions) {
+        Result<server::SessionSpec> session = parseSession(text);
+        if (!session) return session.error();
+        config.sessions.push_back(std::move(session).value());
+    }
+    const Result<protocol::Fingerprint> fingerprint = selfTest();
+    if (!fingerprint) return fingerprint.error();
+    config.fingerprint = *fingerprint;
+    return config;
+}
+
+Answer serve(ServeOptions options) {
+    if (const Status filled = fillFromFile(options); !filled) return filled.error();
+    Result<server::HostConfig> config = configOf(options);
+    if (!config) return config.error();
+    const bool open = config->open;
+    Result<std::unique_ptr<server::Host>> host = server::Host::open(std::move(config).value());
+    if (!host) return host.error();
+    if (open)
+        std::fprintf(stderr, "warning: --open: whoever reaches %s may play, without a ticket\n",
+                     (*host)->address().c_str());
+    std::printf("listening on %s\n", (*host)->address().c_str());
+    std::fflush(stdout);
+    const Status ended = (*host)->run();
+    if (ended) return Exit::Done;
+    std::fprintf(stderr, "huestep: %s\n", ended.error().message.c_str());
+    return Exit::Differs;
+}
+
+}  // namespace
+
+void addServe(Menu& menu) {
+    const auto o = std::make_shared<ServeOptions>();
+    CLI::App* sub = menu.add(
+        "serve", "Hosts sessions; the journal of session NAME is the folder DIR/NAME.",
+        "huestep serve --listen 127.0.0.1:7777 --data huestep-data --session play=sandbox --open",
+        [o] { return serve(*o); });
+    sub->add_option("--config", o->config, "TOML file with these options; the command line wins");
+    sub->add_option("--listen", o->listen,
+                    "HOST:PORT for players; port 0: any free one (default: 127.0.0.1:7777)");
+    sub->add_option("--data", o->data, "Folder of the journals (default: huestep-data)");
+    sub->add_option("--session", o->sessions, "NAME=SCENE; may be given several times");
+    sub->add_flag("--open", o->open, "Let anyone join without a ticket (there are none yet)");
+}
+
+}  // namespace huestep::tools

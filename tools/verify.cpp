@@ -1,0 +1,297 @@
+/// `huestep verify`: runs every combination and compares the hash of every tick.
+///
+/// A scene is told as several stories: as given; with its bodies and joints listed in other
+/// orders; and with noise, far-away bodies with contacts and joints of their own that are removed
+/// in the middle of the run. Noise comes in two forms, each with the reference it must equal:
+///
+///  - ids above the scene's. Reference: the scene as given, with the counters that the noise would
+///    have left, and the same host commands, which name bodies that do not exist. A rejected
+///    command leaves its sequence in the host's record just as an applied one does, so from the
+///    tick of the removal on both states must be the same to the last bit.
+///  - ids between the scene's. A scene cannot name ids of shapes, so without the noise the shapes
+///    would be numbered otherwise. Reference: the same noise, removed by the same commands before
+///    anything moves; the other has it for many ticks of contacts and joints.
+///
+/// Every story is played with every thread count; as given it is also played with every width,
+/// restored and disturbed. Other stories take the widths in turn, so that the number of
+/// combinations stays a sum and not a product.
+#include "tools/verify.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "tools/engines.h"
+#include "tools/journal_story.h"
+#include "tools/lists.h"
+#include "tools/reorder.h"
+#include "tools/text.h"
+
+namespace huestep::tools {
+namespace {
+
+constexpr std::uint64_t shuffleSeeds[] = {1, 2};
+constexpr std::uint64_t noiseTicks = 60;  // how long noise lives, in a run that is long enough
+
+struct Plan {
+    std::vector<Story> stories;
+    std::vector<Combination> combinations;
+};
+
+Result<Story> storyOf(const std::string& name, const Scene& scene, std::uint64_t ticks) {
+    Result<World> world = World::create(scene);
+    if (!world) return Error{name + ": " + world.error().message};
+    Story story;
+    story.name = name;
+    story.start = std::make_shared<const World>(std::move(world).value());
+    story.end = story.start->tick() + ticks;
+    return story;
+}
+
+/// Adds a story that must equal the story at place `reference` from tick `from` on.
+Status addStory(Plan& plan, const std::string& name, const Scene& scene, std::uint64_t ticks,
+                std::size_t reference, std::uint64_t from,
+                std::map<std::uint64_t, std::vector<Command>> commands = {}) {
+    Result<Story> story = storyOf(name, scene, ticks);
+    if (!story) return story.error();
+    story->reference = reference;
+    story->comparedFrom = from;
+    story->commands = std::move(commands);
+    plan.stories.push_back(std::move(story).value());
+    return Done{};
+}
+
+Status addReordered(Plan& plan, const Scene& given, std::uint64_t ticks) {
+    const Result<Scene> scene = withExplicitIds(given);
+    if (!scene) return scene.error();
+    for (const std::uint64_t seed : shuffleSeeds) {
+        const std::string name = "listed in order " + std::to_string(seed);
+        const Status added = addStory(plan, name, shuffled(*scene, seed), ticks, 0, 0);
+        if (!added) return added;
+    }
+    const std::uint64_t removal = std::min(noiseTicks, ticks / 2);
+
+    const Result<Noisy> above = withNoiseAbove(*scene);
+    if (!above) return above.error();
+    const Result<Scene> raised = withCountersOf(*scene, *above);
+    if (!raised) return raised.error();
+    std::size_t reference = plan.stories.size();
+    Status added = addStory(plan, "with counters after noise", *raised, ticks, reference, 0,
+                            {{removal, above->removal}});
+    if (!added) return added;
+    added = addStory(plan, "after noise with higher ids", above->scene, ticks, reference,
+                     removal + 1, {{removal, above->removal}});
+    if (!added) return added;
+
+    const Result<Noisy> between = withNoiseBetween(*scene);
+    if (!between) return between.error();
+    reference = plan.stories.size();
+    added = addStory(plan, "with noise removed at once", between->scene, ticks, reference, 0,
+                     {{0, between->removal}});
+    if (!added) return added;
+    return addStory(plan, "after noise with ids between", between->scene, ticks, reference,
+                    removal + 1, {{removal, between->removal}});
+}
+
+/// Every thread count and width for story 0, with its disturbances; the widths in turn elsewhere.
+void combine(Plan& plan, const std::vector<int>& threads, const std::vector<Simd>& widths,
+             std::uint64_t restoreEvery) {
+    std::size_t turn = 0;
+    for (const int count : threads)
+        for (const Simd width : widths) plan.combinations.push_back({0, {count, width, 0, 0}});
+    const auto nextWidth = [&] { return widths[turn++ % widths.size()]; };
+    for (const int count : threads) {
+        if (restoreEvery != 0)
+            plan.combinations.push_back({0, {count, nextWidth(), restoreEvery, 0}});
+        plan.combinations.push_back(
+            {0, {count, nextWidth(), 0, static_cast<std::uint64_t>(count) + 100}});
+    }
+    for (std::size_t story = 1; story < plan.stories.size(); ++story)
+        for (const int count : threads)
+            plan.combinations.push_back({story, {count, nextWidth(), 0, 0}});
+}
+
+Result<Plan> planScene(const VerifyOptions& options, const NamedScene& named) {
+    Plan plan;
+    const std::uint64_t ticks = options.ticks != 0 ? options.ticks : named.ticks;
+    const Status added = addStory(plan, "as given", named.scene, ticks, 0, 0);
+    if (!added) return Error{named.name + ": " + added.error().message};
+    if (options.reorder) {
+        const Status more = addReordered(plan, named.scene, ticks);
+        if (!more) return more.error();
+    }
+    return plan;
+}
+
+Result<Plan> planJournal(const VerifyOptions& options) {
+    if (options.reorder)
+        return Error{
+            "--reorder: a journal starts from one state; give a scene to build it in "
+            "other orders"};
+    Result<JournalStory> journal = loadJournal(options.source);
+    if (!journal) return journal.error();
+    Story& story = journal->story;
+    story.name = "as recorded";
+    if (options.ticks != 0) story.end = std::min(story.end, story.start->tick() + options.ticks);
+    Plan plan;
+    plan.stories.push_back(std::move(story));
+    return plan;
+}
+
+/// The first combination that differs, in the order of the list.
+std::optional<std::size_t> firstUnequal(const Comparison& comparison) {
+    for (std::size_t i = 0; i < comparison.outcomes.size(); ++i)
+        if (!comparison.outcomes[i].equal()) return i;
+    return std::nullopt;
+}
+
+std::string nameOf(const Plan& plan, std::size_t i) {
+    const Combination& c = plan.combinations[i];
+    return plan.stories[c.story].name + ", " + c.way.sentence();
+}
+
+/// In words: where combination `i` left what it must equal.
+std::string explain(const Plan& plan, const Comparison& comparison, std::size_t i) {
+    const Outcome& outcome = comparison.outcomes[i];
+    if (!outcome.failure.empty()) return nameOf(plan, i) + ": " + outcome.failure;
+    const std::uint64_t tick = *outcome.differsAt;
+    const std::string at = nameOf(plan, i) + ": differs at tick " + std::to_string(tick);
+    const std::size_t story = plan.stories[plan.combinations[i].story].reference;
+    const auto leads = std::find_if(plan.combinations.begin(), plan.combinations.end(),
+                                    [&](const Combination& c) { return c.story == story; });
+    const auto reference = static_cast<std::size_t>(leads - plan.combinations.begin());
+    if (reference == i) return at + " from the hash that was recorded";
+    const auto difference =
+        nameDifference(plan.stories, plan.combinations[reference], plan.combinations[i], tick);
+    if (!difference) return at + "; " + difference.error().message;
+    if (!*difference)
+        return at + (outcome.recordDiffers ? " from the recorded hash, as the first does"
+                                           : " in its hash, but in no field when run again");
+    return at + " from " + nameOf(plan, reference) + ": " + (*difference)->sentence();
+}
+
+Json asJson(const VerifyOptions& options, const Plan& plan, const Comparison& comparison,
+            const std::string& difference) {
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < comparison.outcomes.size(); ++i) {
+        const Combination& c = plan.combinations[i];
+        const Outcome& o = comparison.outcomes[i];
+        Json row = {{"story", plan.stories[c.story].name},
+                    {"threads", c.way.threads},
+                    {"simd", huestep::nameOf(c.way.simd)},
+                    {"restore_every", c.way.restoreEvery},
+                    {"disturbed", c.way.disturbSeed != 0},
+                    {"hashes_compared", o.rootsCompared},
+                    {"equal", o.equal()},
+                    {"tick", o.tick},
+                    {"motion", hex(o.motionRoot)},
+                    {"full", hex(o.fullRoot)}};
+        if (o.differsAt) row["differs_at"] = *o.differsAt;
+        rows.push_back(row);
+    }
+    Json json = {{"source", options.source},
+                 {"engine", "huestep"},
+                 {"combinations", rows},
+                 {"finished", comparison.finished},
+                 {"equal", difference.empty() && comparison.finished}};
+    if (!difference.empty()) json["difference"] = difference;
+    return json;
+}
+
+void printText(const Plan& plan, const Comparison& comparison, const std::string& difference) {
+    Table table({"story", "threads", "simd", "disturbed by", "compared", "final full root", ""});
+    std::uint64_t compared = 0;
+    for (std::size_t i = 0; i < comparison.outcomes.size(); ++i) {
+        const Combination& c = plan.combinations[i];
+        const Outcome& o = comparison.outcomes[i];
+        std::string by = c.way.disturbSeed != 0 ? "drops, shuffled blocks" : "";
+        if (c.way.restoreEvery != 0) by = "restore every " + std::to_string(c.way.restoreEvery);
+        const std::string verdict = o.equal()     ? "equal"
+                                    : o.differsAt ? "differs at " + std::to_string(*o.differsAt)
+                                                  : "fails";
+        table.add({plan.stories[c.story].name, std::to_string(c.way.threads),
+                   std::string(huestep::nameOf(c.way.simd)), by, std::to_string(o.rootsCompared),
+                   hex(o.fullRoot), verdict});
+        compared += o.rootsCompared;
+    }
+    table.print();
+    if (!comparison.finished)
+        std::printf("stopped before all was compared\n");
+    else if (difference.empty())
+        std::printf("equal: %zu combinations, %llu hashes compared\n", comparison.outcomes.size(),
+                    static_cast<unsigned long long>(compared));
+    else
+        std::printf("different: %s\n", difference.c_str());
+}
+
+int jobsOf(const VerifyOptions& options) {
+    if (options.jobs != 0) return options.jobs;
+    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+Answer verifyWorlds(const VerifyOptions& options, Result<Plan> plan) {
+    if (!plan) return plan.error();
+    const Result<std::vector<int>> threads = parseThreads(options.threads);
+    if (!threads) return threads.error();
+    const Result<std::vector<Simd>> widths = parseSimdList(options.simd);
+    if (!widths) return widths.error();
+    combine(*plan, *threads, *widths, options.restoreEvery);
+
+    const Comparison comparison = playAll(plan->stories, plan->combinations, jobsOf(options));
+    std::string difference;
+    if (comparison.finished)
+        if (const auto i = firstUnequal(comparison)) difference = explain(*plan, comparison, *i);
+    if (options.json)
+        print(asJson(options, *plan, comparison, difference));
+    else
+        printText(*plan, comparison, difference);
+    return difference.empty() && comparison.finished ? Exit::Done : Exit::Differs;
+}
+
+Answer verify(const VerifyOptions& options, bool threadsGiven) {
+    if (const Status known = checkEngine(options.engine, engineNames()); !known)
+        return known.error();
+    const bool peer = options.engine != "huestep";
+    if (looksLikeJournal(options.source)) {
+        if (peer)
+            return Error{"--engine: a journal is of huestep and cannot be played by " +
+                         options.engine};
+        return verifyWorlds(options, planJournal(options));
+    }
+    const Result<NamedScene> named = loadScene(options.source);
+    if (!named) return named.error();
+    if (!peer) return verifyWorlds(options, planScene(options, *named));
+    if (threadsGiven || options.restoreEvery != 0)
+        return Error{"--threads, --simd and --restore-every: " + options.engine +
+                     " has one thread, its own arithmetic and no snapshots"};
+    return verifyPeer(options, *named);
+}
+
+}  // namespace
+
+void addVerify(Menu& menu) {
+    const auto o = std::make_shared<VerifyOptions>();
+    const auto given = std::make_shared<bool>(false);
+    CLI::App* sub = menu.add(
+        "verify", "Runs every combination and compares the hash of every tick.",
+        "huestep verify pyramid:base=20 --ticks 300 --threads 1,2,8 --restore-every 37 --reorder",
+        [o, given] { return verify(*o, *given); });
+    sub->add_option("SCENE|LOG", o->source, "Scene, scene file, or the folder of a journal")
+        ->required();
+    sub->add_option("--engine", o->engine, "Whose runs to compare (default: huestep)");
+    sub->add_option("--ticks", o->ticks, "Steps to take (default: the scene's own)")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+    const auto note = [given](const std::string&) { *given = true; };
+    sub->add_option("--threads", o->threads, "Thread counts (default: 1,2,3,8)")->each(note);
+    sub->add_option("--simd", o->simd, "Widths, or all that this machine has (default: all)")
+        ->each(note);
+    sub->add_option("--restore-every", o->restoreEvery,
+                    "Also save and restore after every K ticks");
+    sub->add_flag("--reorder", o->reorder, "Also build the scene in other orders and after noise");
+    sub->add_option("--jobs", o->jobs, "Combinations side by side (default: one a core)")
+        ->check(CLI::Range(1, 256));
+    sub->add_flag("--json", o->json, "Print one JSON document");
+}
+
+}  // namespace huestep::tools
