@@ -1,13 +1,16 @@
 #include "protocol/address.h"
 
 #include <charconv>
+#include <utility>
 
 namespace huestep::protocol {
 
 namespace {
 
 Error wrong(std::string_view text, const char* why) {
-    return Error{"'" + std::string(text.substr(0, 100)) + "' is no address HOST:PORT: " + why};
+    std::string sentence = "'";
+    sentence.append(text.substr(0, 100)).append("' is no address HOST:PORT: ").append(why);
+    return Error{std::move(sentence)};
 }
 
 }  // namespace
@@ -35,9 +38,9 @@ Result<Address> parseAddress(std::string_view text, bool mayBeZero) {
 }
 
 std::string toText(const Address& address) {
-    const bool brackets = address.host.find(':') != std::string::npos;
-    return (brackets ? "[" + address.host + "]" : address.host) + ":" +
-           std::to_string(address.port);
+    std::string text = address.host;
+    if (text.find(':') != std::string::npos) text.insert(0, 1, '[').push_back(']');
+    return text.append(":").append(std::to_string(address.port));
 }
 
 }  // namespace huestep::protocol

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <string>
 
 #include "core/state/hash.h"
+#include "protocol/bytes.h"
 
 namespace huestep::protocol {
 
@@ -14,20 +14,6 @@ namespace {
 constexpr std::uint16_t magic = 0x4875;
 constexpr std::uint8_t frameVersion = 1;
 constexpr std::size_t hashedHeaderBytes = 8;
-
-// The bytes on the wire are little-endian, as every machine we build for is (core/state/records.h
-// asserts it), so a value is copied as it lies in memory.
-template <class T>
-T load(std::span<const std::byte> bytes, std::size_t offset) {
-    T value;
-    std::memcpy(&value, bytes.data() + offset, sizeof value);
-    return value;
-}
-
-template <class T>
-void store(std::span<std::byte> bytes, std::size_t offset, T value) {
-    std::memcpy(bytes.data() + offset, &value, sizeof value);
-}
 
 /// XXH3 of the first half of the header, then of that with the payload's own hash: one pass over
 /// the payload and no copy, though header and payload may lie apart.

@@ -1,45 +1,32 @@
 /// The journal of a session: an append-only, chained log of frames in segments, with snapshots.
 ///
-/// A journal is a folder: `segment-<first tick, 12 digits>.log`, `snapshot-<tick>.snap`. A segment
-/// starts with {magic, version, fingerprint, session, epoch, chain hash so far}; each record is
-/// {length, type, tick, epoch, XXH3 of payload, chain hash} and a payload: an encoded Frame, or a
-/// Checkpoint with the full root. The chain hash of a record covers all before it.
+/// A journal is a folder: `segment-<first tick>.log` and `snapshot-<tick>.snap`, ticks with 12
+/// digits. Other files are left alone. A segment starts with {magic, version, epoch, fingerprint,
+/// session, first tick, chain hash so far}; each record is {magic, length, tick, epoch, type, start
+/// of its batch, XXH3 of payload, hash of this header}, a payload and the chain hash. A payload is
+/// an encoded Frame, or a Checkpoint with the full root. The chain hash of a record covers all
+/// before it. Layouts: journal_format.h.
 ///
-/// Reading and writing of bytes is behind `LogStore`, so that a test can tear, lose, lie and fail.
+/// What a crash may leave and what it may not: a batch is written and synced before the next one
+/// starts, so only the last batch of the newest segment can be torn. It shows as a file that ends
+/// before its last record does, or as a block of 512 bytes that reads as zeros since it never
+/// reached the disk. Everything else that is wrong, a flipped bit in the very last record too, is
+/// corruption and is refused: nobody can say what else the disk lost.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/result.h"
+#include "protocol/log_store.h"
 #include "protocol/messages.h"
 
 namespace huestep::protocol {
-
-/// The few things a journal needs of a file system, in one folder. Names are plain file names.
-/// Every call may fail with a sentence that names the file.
-class LogStore {
- public:
-    virtual ~LogStore() = default;
-    virtual Result<std::vector<std::string>> list() = 0;  ///< sorted
-    virtual Result<std::vector<std::byte>> read(const std::string& name) = 0;
-    virtual Status create(const std::string& name) = 0;  ///< empty; fails if there; folder synced
-    virtual Status append(const std::string& name, std::span<const std::byte> bytes) = 0;
-    virtual Status sync(const std::string& name) = 0;  ///< data is on disk on return
-    virtual Status truncate(const std::string& name, std::uint64_t size) = 0;
-    /// Temporary file, sync, rename, sync of the folder: all or nothing.
-    virtual Status replace(const std::string& name, std::span<const std::byte> bytes) = 0;
-    virtual Status remove(const std::string& name) = 0;
-    [[nodiscard]] virtual std::string describe(const std::string& name) const = 0;  ///< path
-};
-
-/// A store in a folder of the file system, created if missing.
-Result<std::unique_ptr<LogStore>> openFolder(const std::string& path);
 
 /// Who writes: part of every segment's header.
 struct JournalIdentity {
@@ -49,53 +36,81 @@ struct JournalIdentity {
 };
 
 struct JournalEntry {
-    std::uint32_t epoch = 0;
+    std::uint32_t epoch = 0;  ///< read: of its segment; written: the writer's own is taken
     /// A frame of the session, or the full root of the world after a tick.
     std::variant<Frame, Checkpoint> content;
 };
 
 /// What reading a journal from its start found.
 struct JournalContents {
-    JournalIdentity identity;           ///< of the newest segment
+    JournalIdentity identity;           ///< of the newest segment; empty: there is no journal yet
     std::vector<JournalEntry> entries;  ///< in order
     /// Bytes after the last whole record of the newest segment that do not form one: a torn tail.
     std::uint64_t tornBytes = 0;
-    std::string tornFile;
-    std::optional<std::uint64_t> snapshotTick;  ///< newest snapshot that reads back whole
+    std::string tornFile;                       ///< path
+    std::optional<std::uint64_t> snapshotTick;  ///< newest that reads back whole, at or below
+                                                ///< `nextTick`
+    std::vector<std::string> refusedSnapshots;  ///< why newer ones were passed over, for the log
+
+    std::uint64_t nextTick = 0;      ///< of the frame that comes next
+    std::string segment;             ///< newest, as a file name
+    std::uint64_t segmentBytes = 0;  ///< its whole records and what is before them
+    std::uint64_t chain = 0;         ///< that the next segment starts with
 };
 
-/// Reads segments and checks header, checksums and chain. A torn tail of the newest segment is
-/// reported; anything else that is wrong is refused with a sentence naming file and offset.
-/// `fromTick`: entries below it may be left out.
+/// Reads segments and checks headers, checksums, chain and order: frames come tick by tick without
+/// a gap. A torn tail of the newest segment is reported; anything else that is wrong is refused
+/// with a sentence naming file and offset. `fromTick`: entries below it are left out, and segments
+/// that end below it are not even read. An empty folder is an empty journal.
 Result<JournalContents> readJournal(LogStore& store, std::uint64_t fromTick = 0);
 
-/// The bytes of the snapshot of a tick, checked against its name and checksum.
+/// The bytes of the snapshot of a tick, checked against its name and checksums. The sentence of a
+/// failure names file and offset.
 Result<std::vector<std::byte>> readSnapshot(LogStore& store, std::uint64_t tick);
 
+/// The ticks of the snapshots a folder holds, ascending, whether or not they read back.
+Result<std::vector<std::uint64_t>> snapshotTicks(LogStore& store);
+
 /// Appends to a journal. Not for the loop's thread: calls block on the disk. After the first
-/// failure of a sync the writer stays failed for good: what the disk holds is unknown.
+/// failure of an append or a sync the writer stays failed for good: what the disk holds is unknown.
+/// Reopening the journal finds out. The store must outlive the writer.
 class JournalWriter {
  public:
-    /// Continues the journal after `contents` (cutting off a torn tail), in a new segment.
+    /// Continues the journal after `contents` (cutting off a torn tail), in a new segment. Locks
+    /// the folder. `nextTick` must be `contents.nextTick` unless the journal is empty.
     static Result<JournalWriter> open(LogStore& store, JournalIdentity identity,
                                       const JournalContents& contents, std::uint64_t nextTick);
 
-    /// Appends one batch of entries and syncs once. On success they are committed.
+    /// Appends one batch of entries and syncs once. On success they are committed. A frame that is
+    /// not the next one is refused before anything is written.
     Status append(std::span<const JournalEntry> batch);
 
-    /// Writes a snapshot beside the log; keeps the two newest.
+    /// Writes a snapshot beside the log; keeps the two newest, and that of tick 0 from which the
+    /// whole journal can be replayed. A failure leaves the log as it is.
     Status writeSnapshot(std::uint64_t tick, std::span<const std::byte> bytes);
 
-    /// Starts a new segment at this tick.
+    /// Starts a new segment at this tick, which must be the next one. Without frames in the
+    /// current segment nothing happens.
     Status roll(std::uint64_t tick);
+
+    [[nodiscard]] std::uint64_t nextTick() const { return m_nextTick; }
+    /// Bytes of the current segment, to decide when to `roll`.
+    [[nodiscard]] std::uint64_t segmentBytes() const { return m_segmentBytes; }
 
  private:
     JournalWriter(LogStore& store, JournalIdentity identity);
+    Status startSegment(std::uint64_t tick);
+    Status fail(Error error);
+
     LogStore* m_store;
     JournalIdentity m_identity;
     std::string m_segment;
+    std::uint64_t m_segmentBytes = 0;
+    std::uint64_t m_segmentSeed = 0;  ///< chain hash right after the segment's header
+    std::uint64_t m_firstTick = 0;
+    std::uint64_t m_nextTick = 0;
     std::uint64_t m_chain = 0;
-    bool m_failed = false;
+    std::string m_failure;  ///< the first one's sentence; empty: none
 };
 
 }  // namespace huestep::protocol

@@ -1,0 +1,186 @@
+#include "protocol/log_store.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "protocol/journal.h"
+#include "protocol/memory_store.h"
+
+namespace huestep::protocol {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own that is gone at the end.
+class Folder {
+ public:
+    Folder() {
+        std::string name = (fs::temp_directory_path() / "huestep-test-XXXXXX").string();
+        m_path = ::mkdtemp(name.data());
+    }
+    ~Folder() { fs::remove_all(m_path); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    [[nodiscard]] const std::string& path() const { return m_path; }
+
+ private:
+    std::string m_path;
+};
+
+std::vector<std::byte> bytesOf(const std::string& text) {
+    const auto bytes = std::as_bytes(std::span(text.data(), text.size()));
+    return {bytes.begin(), bytes.end()};
+}
+
+std::string reasonOf(const Status& status) {
+    return status ? "done" : status.error().message;
+}
+
+/// What every store must do, whatever keeps its bytes.
+void behavesAsAFolder(LogStore& store, const std::string& path) {
+    EXPECT_TRUE(store.list()->empty());
+    EXPECT_EQ(reasonOf(store.create("b.log")), "done");
+    EXPECT_EQ(reasonOf(store.create("b.log")), path + "/b.log: cannot open: File exists");
+    EXPECT_EQ(reasonOf(store.append("b.log", bytesOf("one "))), "done");
+    EXPECT_EQ(reasonOf(store.append("b.log", bytesOf("two"))), "done");
+    EXPECT_EQ(reasonOf(store.sync("b.log")), "done");
+    EXPECT_EQ(*store.read("b.log"), bytesOf("one two"));
+    EXPECT_EQ(reasonOf(store.truncate("b.log", 3)), "done");
+    EXPECT_EQ(reasonOf(store.append("b.log", bytesOf("!"))), "done");
+    EXPECT_EQ(*store.read("b.log"), bytesOf("one!"));
+    EXPECT_EQ(reasonOf(store.replace("a.snap", bytesOf("first"))), "done");
+    EXPECT_EQ(reasonOf(store.replace("a.snap", bytesOf("second, longer"))), "done");
+    EXPECT_EQ(*store.read("a.snap"), bytesOf("second, longer"));
+    EXPECT_EQ(reasonOf(store.replace("b.log", bytesOf("new"))), "done");
+    EXPECT_EQ(reasonOf(store.append("b.log", bytesOf("er"))), "done");
+    EXPECT_EQ(*store.read("b.log"), bytesOf("newer"));
+    EXPECT_EQ(*store.list(), (std::vector<std::string>{"a.snap", "b.log"}));
+    EXPECT_EQ(reasonOf(store.remove("a.snap")), "done");
+    EXPECT_EQ(*store.list(), std::vector<std::string>{"b.log"});
+    const std::string missing = ": No such file or directory";
+    EXPECT_EQ(store.read("a.snap").error().message, path + "/a.snap: cannot open" + missing);
+    EXPECT_EQ(reasonOf(store.remove("a.snap")), path + "/a.snap: cannot remove" + missing);
+    EXPECT_EQ(reasonOf(store.append("c.log", {})), path + "/c.log: cannot open" + missing);
+}
+
+TEST(LogStore, AFolderKeepsFiles) {
+    const Folder folder;
+    const auto store = openFolder(folder.path());
+    ASSERT_TRUE(store.ok()) << store.error().message;
+    behavesAsAFolder(**store, folder.path());
+}
+
+TEST(LogStore, MemoryKeepsFilesTheSameWay) {
+    MemoryStore store("disk");
+    behavesAsAFolder(store, "disk");
+}
+
+TEST(LogStore, NamesCannotLeaveTheFolder) {
+    const Folder folder;
+    std::ofstream(fs::path(folder.path()) / "outside.txt") << "secret";
+    const auto store = openFolder(folder.path() + "/inside/deeper");
+    ASSERT_TRUE(store.ok()) << store.error().message;
+    MemoryStore memory;
+    for (const std::string& name :
+         {std::string("../outside.txt"), std::string("/etc/passwd"), std::string(".."),
+          std::string("."), std::string(), std::string(".hidden"), std::string("a/b"),
+          std::string("a\0b", 3), std::string(101, 'a')}) {
+        const std::string reason = "'" + name + "' is not a plain file name";
+        for (LogStore* each : {store->get(), static_cast<LogStore*>(&memory)}) {
+            EXPECT_EQ(each->read(name).error().message, reason);
+            EXPECT_EQ(reasonOf(each->create(name)), reason);
+            EXPECT_EQ(reasonOf(each->append(name, {})), reason);
+            EXPECT_EQ(reasonOf(each->sync(name)), reason);
+            EXPECT_EQ(reasonOf(each->truncate(name, 0)), reason);
+            EXPECT_EQ(reasonOf(each->replace(name, {})), reason);
+            EXPECT_EQ(reasonOf(each->remove(name)), reason);
+        }
+    }
+    fs::create_symlink("../../outside.txt", folder.path() + "/inside/deeper/link");
+    EXPECT_FALSE((*store)->read("link").ok());
+    EXPECT_FALSE((*store)->append("link", bytesOf("x")).ok());
+    EXPECT_TRUE((*store)->list()->empty());
+}
+
+TEST(LogStore, OneStoreAtATimeMayWrite) {
+    const Folder folder;
+    auto first = openFolder(folder.path());
+    const auto second = openFolder(folder.path());
+    EXPECT_EQ(reasonOf((*first)->lockForWriting()), "done");
+    EXPECT_EQ(reasonOf((*first)->lockForWriting()), "done");
+    EXPECT_EQ(reasonOf((*second)->lockForWriting()),
+              folder.path() + ": is being written by another server");
+    EXPECT_TRUE((*second)->list().ok());
+    first->reset();
+    EXPECT_EQ(reasonOf((*second)->lockForWriting()), "done");
+}
+
+TEST(LogStore, AFolderThatCannotBeMadeIsNamed) {
+    const Folder folder;
+    std::ofstream(fs::path(folder.path()) / "file") << "x";
+    const auto store = openFolder(folder.path() + "/file/inside");
+    ASSERT_FALSE(store.ok());
+    EXPECT_EQ(store.error().message.rfind(folder.path() + "/file/inside: cannot ", 0), 0u);
+}
+
+TEST(LogStore, AJournalInAFolderReadsBackAndLeftoversOfAReplaceAreIgnored) {
+    const Folder folder;
+    const JournalIdentity identity{"s", {}, 1};
+    for (std::uint64_t start = 0; start < 3; ++start) {
+        const auto store = openFolder(folder.path());
+        const auto contents = readJournal(**store);
+        ASSERT_TRUE(contents.ok()) << contents.error().message;
+        ASSERT_EQ(contents->nextTick, start);
+        auto writer = JournalWriter::open(**store, identity, *contents, start);
+        ASSERT_TRUE(writer.ok()) << writer.error().message;
+        const std::vector<JournalEntry> batch{{1, Frame{start, {}, {}, start, 0}}};
+        ASSERT_TRUE(writer->append(batch).ok());
+        ASSERT_TRUE(writer->writeSnapshot(start, bytesOf("world")).ok());
+        std::ofstream(fs::path(folder.path()) / "segment-000000000009.log.tmp") << "half";
+    }
+    const auto store = openFolder(folder.path());
+    const auto contents = readJournal(**store);
+    ASSERT_TRUE(contents.ok()) << contents.error().message;
+    EXPECT_EQ(contents->entries.size(), 3u);
+    EXPECT_EQ(contents->snapshotTick, 2u);
+}
+
+TEST(MemoryStore, ACrashKeepsWhatWasSyncedAndAtMostWhatWasWritten) {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        MemoryStore store;
+        ASSERT_TRUE(store.create("f").ok());
+        ASSERT_TRUE(store.append("f", std::vector<std::byte>(1'000, std::byte{1})).ok());
+        ASSERT_TRUE(store.sync("f").ok());
+        ASSERT_TRUE(store.append("f", std::vector<std::byte>(3'000, std::byte{2})).ok());
+        store.crash(seed);
+        const auto bytes = *store.read("f");
+        ASSERT_GE(bytes.size(), 1'000u);
+        ASSERT_LE(bytes.size(), 4'000u);
+        for (std::size_t i = 0; i < bytes.size(); ++i) {
+            const bool allowed = i < 1'000 ? bytes[i] == std::byte{1}
+                                           : bytes[i] == std::byte{2} || bytes[i] == std::byte{0};
+            ASSERT_TRUE(allowed) << "seed " << seed << ", byte " << i;
+        }
+    }
+}
+
+TEST(MemoryStore, DiesInTheMiddleOfAChangeAndAnswersNothingAfterIt) {
+    MemoryStore store;
+    ASSERT_TRUE(store.create("f").ok());
+    store.dieAfter(1);
+    EXPECT_TRUE(store.append("f", bytesOf("abc")).ok());
+    EXPECT_TRUE(store.read("f").ok());
+    EXPECT_FALSE(store.append("f", bytesOf("defghi")).ok());
+    EXPECT_FALSE(store.read("f").ok());
+    EXPECT_FALSE(store.list().ok());
+    EXPECT_FALSE(store.replace("g", {}).ok());
+    store.revive();
+    EXPECT_GE(store.read("f")->size(), 3u);
+    EXPECT_LE(store.read("f")->size(), 9u);
+}
+
+}  // namespace
+}  // namespace huestep::protocol
