@@ -8,7 +8,9 @@ namespace {
 // nearly coincide is noise. A tenth of the 5 mm that the field calls the linear slop.
 constexpr double featureTolerance = 0.0005;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t at(int i) {
+    return static_cast<std::size_t>(i);
+}
 
 constexpr std::uint16_t featureOf(int vertexA, int vertexB) {
     return static_cast<std::uint16_t>((vertexA << 8) | vertexB);
@@ -263,8 +265,7 @@ ManifoldT<Real> collide(const HullT<Real>& a, const HullT<Real>& b, const PoseT<
     }
     if (a.count == 1) {
         // In the frame of B, then turned back.
-        ManifoldT<Real> m =
-            hullAndDisc(b, a, untransform(relative, a.vertices[0]), margin);
+        ManifoldT<Real> m = hullAndDisc(b, a, untransform(relative, a.vertices[0]), margin);
         m.normal = -rotate(relative.q, m.normal);
         for (ManifoldPointT<Real>& p : m.points) {
             p.point = transform(relative, p.point);
@@ -277,7 +278,7 @@ ManifoldT<Real> collide(const HullT<Real>& a, const HullT<Real>& b, const PoseT<
 
 template ManifoldT<float> collide(const HullT<float>&, const HullT<float>&, const PoseT<float>&,
                                   float);
-template ManifoldT<double> collide(const HullT<double>&, const HullT<double>&,
-                                   const PoseT<double>&, double);
+template ManifoldT<double> collide(const HullT<double>&, const HullT<double>&, const PoseT<double>&,
+                                   double);
 
 }  // namespace huestep

@@ -17,8 +17,8 @@ namespace huestep {
 
 template <class Real>
 struct ManifoldPointT {
-    Vec2T<Real> point;    ///< m, in the frame of A, midway between the two surfaces
-    Real separation{0};   ///< m, along the normal; negative: overlap
+    Vec2T<Real> point;          ///< m, in the frame of A, midway between the two surfaces
+    Real separation{0};         ///< m, along the normal; negative: overlap
     std::uint16_t feature = 0;  ///< the vertex of A (high byte) and of B (low byte) it belongs to
 };
 

@@ -70,9 +70,10 @@ MassProperties massOf(const HullT<double>& hull, double density) {
             addStrip(m, hull.vertices[here], hull.vertices[next], hull.normals[here], r);
             const RotationT<double> turn{dot(hull.normals[here], hull.normals[next]),
                                          cross(hull.normals[here], hull.normals[next])};
-            // Half a turn at the end of a capsule may come out as −π by rounding.
+            // Half a turn at the end of a capsule may come out as −π by rounding, and no turn
+            // between edges in line as a little less than 0.
             const double signedAngle = angleOf(turn);
-            const double angle = signedAngle < 0.0 ? signedAngle + 2.0 * pi : signedAngle;
+            const double angle = signedAngle < -0.5 * pi ? signedAngle + 2.0 * pi : signedAngle;
             const RotationT<double> half = rotationOf(0.5 * angle);
             addSector(m, hull.vertices[next], rotate(half, hull.normals[here]), angle, r);
         }

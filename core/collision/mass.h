@@ -8,9 +8,9 @@
 namespace huestep {
 
 struct MassProperties {
-    double mass = 0.0;       ///< kg
-    Vec2T<double> center;    ///< m, in the frame the hull is given in
-    double inertia = 0.0;    ///< kg·m², about `center`
+    double mass = 0.0;     ///< kg
+    Vec2T<double> center;  ///< m, in the frame the hull is given in
+    double inertia = 0.0;  ///< kg·m², about `center`
 };
 
 /// Of one hull of uniform density (kg/m²). A segment (two vertices, radius 0) has none.

@@ -9,26 +9,26 @@ namespace {
 // Taylor series about 0. On [−π/4, π/4] the first term left out is below 1e-16.
 double sineNearZero(double x) {
     const double x2 = x * x;
-    double sum = -1.0 / 1307674368000.0;         // 15!
-    sum = sum * x2 + 1.0 / 6227020800.0;         // 13!
-    sum = sum * x2 - 1.0 / 39916800.0;           // 11!
-    sum = sum * x2 + 1.0 / 362880.0;             // 9!
-    sum = sum * x2 - 1.0 / 5040.0;               // 7!
-    sum = sum * x2 + 1.0 / 120.0;                // 5!
-    sum = sum * x2 - 1.0 / 6.0;                  // 3!
+    double sum = -1.0 / 1307674368000.0;  // 15!
+    sum = sum * x2 + 1.0 / 6227020800.0;  // 13!
+    sum = sum * x2 - 1.0 / 39916800.0;    // 11!
+    sum = sum * x2 + 1.0 / 362880.0;      // 9!
+    sum = sum * x2 - 1.0 / 5040.0;        // 7!
+    sum = sum * x2 + 1.0 / 120.0;         // 5!
+    sum = sum * x2 - 1.0 / 6.0;           // 3!
     return x + x * x2 * sum;
 }
 
 double cosineNearZero(double x) {
     const double x2 = x * x;
-    double sum = 1.0 / 20922789888000.0;         // 16!
-    sum = sum * x2 - 1.0 / 87178291200.0;        // 14!
-    sum = sum * x2 + 1.0 / 479001600.0;          // 12!
-    sum = sum * x2 - 1.0 / 3628800.0;            // 10!
-    sum = sum * x2 + 1.0 / 40320.0;              // 8!
-    sum = sum * x2 - 1.0 / 720.0;                // 6!
-    sum = sum * x2 + 1.0 / 24.0;                 // 4!
-    sum = sum * x2 - 0.5;                        // 2!
+    double sum = 1.0 / 20922789888000.0;   // 16!
+    sum = sum * x2 - 1.0 / 87178291200.0;  // 14!
+    sum = sum * x2 + 1.0 / 479001600.0;    // 12!
+    sum = sum * x2 - 1.0 / 3628800.0;      // 10!
+    sum = sum * x2 + 1.0 / 40320.0;        // 8!
+    sum = sum * x2 - 1.0 / 720.0;          // 6!
+    sum = sum * x2 + 1.0 / 24.0;           // 4!
+    sum = sum * x2 - 0.5;                  // 2!
     return 1.0 + x2 * sum;
 }
 
@@ -56,10 +56,14 @@ RotationT<double> rotationOf(double radians) {
     const double s = sineNearZero(r);
     const double c = cosineNearZero(r);
     switch (k & 3) {
-        case 0: return {c, s};
-        case 1: return {-s, c};
-        case 2: return {-c, -s};
-        default: return {s, -c};
+        case 0:
+            return {c, s};
+        case 1:
+            return {-s, c};
+        case 2:
+            return {-c, -s};
+        default:
+            return {s, -c};
     }
 }
 
@@ -68,8 +72,12 @@ Rotation rotationOf(float radians) {
     return {static_cast<float>(q.c), static_cast<float>(q.s)};
 }
 
-float sine(float radians) { return rotationOf(radians).s; }
-float cosine(float radians) { return rotationOf(radians).c; }
+float sine(float radians) {
+    return rotationOf(radians).s;
+}
+float cosine(float radians) {
+    return rotationOf(radians).c;
+}
 
 double angleOf(RotationT<double> q) {
     const double c = q.c < 0 ? -q.c : q.c;

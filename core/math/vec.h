@@ -187,6 +187,8 @@ using Bounds = BoundsT<float>;
 
 /// +0 for either zero: IEEE's round-to-nearest makes −0 + 0 = +0 and leaves all else alone.
 /// State holds canonical zeros only, so that equal states have equal bytes.
-constexpr float canonicalZero(float v) { return v + 0.0f; }
+constexpr float canonicalZero(float v) {
+    return v + 0.0f;
+}
 
 }  // namespace huestep

@@ -19,7 +19,7 @@ using Clock = std::uint64_t (*)();
 /// A team of `threads` workers: the caller's thread and `threads − 1` of its own, which sleep
 /// between uses. Thread rule: one caller at a time; the destructor joins.
 class Executor {
-   public:
+ public:
     /// `threads`: 1 to 64. `shuffleSeed` ≠ 0 hands blocks to workers in an order drawn from it,
     /// for tests. `clock`, if given, measures how long workers wait for each other.
     explicit Executor(int threads, std::uint64_t shuffleSeed = 0, Clock clock = nullptr);
@@ -43,7 +43,7 @@ class Executor {
     /// Nanoseconds each worker has waited at barriers and for the end of uses; zeros without clock.
     [[nodiscard]] std::vector<std::uint64_t> waited() const;
 
-   private:
+ private:
     struct Team;
     int m_threads;
     std::unique_ptr<Team> m_team;

@@ -87,6 +87,7 @@ enum class BodyType : std::uint8_t {
 struct BodyDef {
     /// 0: given by the order of the scene, see `bodyIdsOf`. A spawn allows 0 alone.
     BodyId id = 0;
+    ShapeId firstShape = 0;  ///< with an id: its shapes' first id, rising as body ids do; 0: next
     BodyType type = BodyType::Static;
     bool fixedRotation = false;
     bool maySleep = true;

@@ -23,7 +23,9 @@ static_assert(std::endian::native == std::endian::little, "state bytes are littl
 
 enum class FieldType : std::uint8_t { F32, U32, I32, U64 };
 
-constexpr std::uint32_t sizeOf(FieldType type) { return type == FieldType::U64 ? 8u : 4u; }
+constexpr std::uint32_t sizeOf(FieldType type) {
+    return type == FieldType::U64 ? 8u : 4u;
+}
 
 /// A run of `count` values of one type in a record. `rest.quietTicks` style names are for people.
 struct Field {
@@ -170,8 +172,8 @@ struct JointInfo {
     static constexpr std::uint32_t collideConnected = 0x100u;
     static constexpr std::uint32_t spring = 0x200u;
     static constexpr std::uint32_t limit = 0x400u;
-    static constexpr std::uint32_t motor = 0x800u;       ///< the motor runs
-    static constexpr std::uint32_t hasMotor = 0x1000u;   ///< the scene gave it a motor
+    static constexpr std::uint32_t motor = 0x800u;      ///< the motor runs
+    static constexpr std::uint32_t hasMotor = 0x1000u;  ///< the scene gave it a motor
     [[nodiscard]] JointKind kind() const { return static_cast<JointKind>(flags & 0xffu); }
     [[nodiscard]] bool has(std::uint32_t bit) const { return (flags & bit) != 0; }
 };
@@ -222,7 +224,7 @@ static_assert(fieldsTile<JointImpulses>());
 struct ContactState {
     ShapeId shapeA;  ///< the lower shape id
     ShapeId shapeB;
-    Pose relative;   ///< body B's centre frame seen from body A's when the manifold was made
+    Pose relative;  ///< body B's centre frame seen from body A's when the manifold was made
     std::array<float, 2> normalImpulse;   ///< N·s, ≥ 0
     std::array<float, 2> tangentImpulse;  ///< N·s
     float rollingImpulse;                 ///< N·m·s

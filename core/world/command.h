@@ -114,19 +114,19 @@ struct Command {
 /// Why a command was rejected. The numbers are part of the protocol: grow only at the end.
 enum class Rejection : std::uint16_t {
     None = 0,
-    UnknownAuthor,     ///< the author is no player of this world
-    NotAllowed,        ///< only the host, or only the owner, may do this
-    OldSequence,       ///< at or below the author's last sequence
+    UnknownAuthor,  ///< the author is no player of this world
+    NotAllowed,     ///< only the host, or only the owner, may do this
+    OldSequence,    ///< at or below the author's last sequence
     UnknownBody,
     UnknownJoint,
-    WrongBodyType,     ///< such as an impulse on a static body
-    NotFinite,         ///< a number is not finite or out of range
-    TooStrong,         ///< an impulse or force above the scene's cap
-    BadDefinition,     ///< a spawned body or joint that `check` refuses
-    OverBudget,        ///< the author's spawn budget is used up
-    OverLimit,         ///< a cap of the world is reached
+    WrongBodyType,  ///< such as an impulse on a static body
+    NotFinite,      ///< a number is not finite or out of range
+    TooStrong,      ///< an impulse or force above the scene's cap
+    BadDefinition,  ///< a spawned body or joint that `check` refuses
+    OverBudget,     ///< the author's spawn budget is used up
+    OverLimit,      ///< a cap of the world is reached
     NothingGrabbed,
-    NoMotor,           ///< the joint has no motor that the scene enabled
+    NoMotor,  ///< the joint has no motor that the scene enabled
     PlayerExists,
 };
 

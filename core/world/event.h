@@ -20,8 +20,8 @@ struct ContactChange {
 struct ContactHit {
     ShapeId shapeA = 0;
     ShapeId shapeB = 0;
-    Vec2 point;           ///< m, in the world
-    Vec2 normal;          ///< from A to B
+    Vec2 point;             ///< m, in the world
+    Vec2 normal;            ///< from A to B
     float approach = 0.0f;  ///< m/s, > 0
     friend bool operator==(const ContactHit&, const ContactHit&) = default;
 };

@@ -40,21 +40,30 @@ struct StepResources {
 
 /// The stages of a step, in order, as measured by `StepReport::nanoseconds`.
 enum class Stage : std::uint8_t {
-    Commands, Pairs, Collide, Islands, Colour, Prepare, Solve, Store, Finish, Sleep, Count
+    Commands,
+    Pairs,
+    Collide,
+    Colour,
+    Prepare,
+    Solve,
+    Store,
+    Finish,
+    Sleep,
+    Count
 };
 std::string_view nameOf(Stage stage);
 
 /// What the last step did: for people and charts, never state.
 struct StepReport {
     std::uint32_t awakeBodies = 0;
-    std::uint32_t pairs = 0;        ///< pairs of shapes whose bounds overlap
-    std::uint32_t contacts = 0;     ///< touching
-    std::uint32_t recycled = 0;     ///< contacts whose manifold was kept
-    std::uint32_t joints = 0;       ///< awake
-    std::uint32_t islands = 0;      ///< awake, with at least one constraint
-    std::uint32_t batches = 0;      ///< islands packed for one thread, or one giant island
-    std::uint32_t colours = 0;      ///< most in any batch
-    std::uint32_t overflow = 0;     ///< constraints beyond the last colour
+    std::uint32_t pairs = 0;     ///< pairs of shapes whose bounds overlap
+    std::uint32_t contacts = 0;  ///< touching
+    std::uint32_t recycled = 0;  ///< contacts whose manifold was kept
+    std::uint32_t joints = 0;    ///< awake
+    std::uint32_t islands = 0;   ///< awake, with at least one constraint
+    std::uint32_t batches = 0;   ///< islands packed for one thread, or one giant island
+    std::uint32_t colours = 0;   ///< most in any batch
+    std::uint32_t overflow = 0;  ///< constraints beyond the last colour
     std::array<std::uint64_t, static_cast<std::size_t>(Stage::Count)> nanoseconds{};
 };
 
@@ -62,10 +71,10 @@ struct StepReport {
 struct ContactView {
     ShapeId shapeA = 0;
     ShapeId shapeB = 0;
-    Vec2 normal;                          ///< world, from A to B
-    int pointCount = 0;                   ///< 1 or 2
-    std::array<Vec2, 2> point;            ///< m, world, midway between the surfaces
-    std::array<float, 2> separation{};    ///< m, < 0: overlap
+    Vec2 normal;                           ///< world, from A to B
+    int pointCount = 0;                    ///< 1 or 2
+    std::array<Vec2, 2> point;             ///< m, world, midway between the surfaces
+    std::array<float, 2> separation{};     ///< m, < 0: overlap
     std::array<float, 2> normalImpulse{};  ///< N·s of the last substep
     int colour = -1;  ///< graph colour in the last step; −1: asleep; 255: overflow
 };
@@ -77,7 +86,7 @@ struct Difference {
     std::string field;   ///< "velocity.x"
     std::string left;    ///< the values, as text that reads back exactly
     std::string right;
-    BodyId body = 0;     ///< the body it belongs to, or 0
+    BodyId body = 0;  ///< the body it belongs to, or 0
 
     /// "body 17 velocity.x: 1.25 here, 1.5 there"
     [[nodiscard]] std::string sentence() const;
@@ -93,7 +102,7 @@ struct RayHit {
 };
 
 class World {
-   public:
+ public:
     /// Builds the world of a scene; fails with the sentence of `check(scene)`.
     static Result<World> create(const Scene& scene);
 
@@ -151,8 +160,9 @@ class World {
     /// Flips one bit of one state field of a body: a hook for tests of desync reports.
     void corruptForTest(BodyId body, std::uint32_t fieldIndex, std::uint32_t bit);
 
-   private:
-    struct Data;
+    struct Data;  ///< opaque
+
+ private:
     explicit World(std::unique_ptr<Data> data);
     std::unique_ptr<Data> m_data;
     friend std::optional<Difference> firstDifference(const World&, const World&);

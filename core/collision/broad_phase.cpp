@@ -1,0 +1,286 @@
+#include "core/collision/broad_phase.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace huestep {
+
+namespace {
+
+constexpr int lowestLevel = -7;   // cells of 1/128 m
+constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits
+constexpr std::int64_t cellBias = std::int64_t{1} << 27;
+constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
+constexpr std::uint32_t joinGrain = 256;
+
+float cellSize(int level) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(level + 127) << 23);
+}
+
+/// Cell of a coordinate. Clamping is monotone, so neighbours stay neighbours at the rim.
+std::int64_t cellOf(float x, float inverseSize) {
+    const float scaled = clampTo(x * inverseSize, -1.0e8f, 1.0e8f);
+    const auto whole = static_cast<std::int64_t>(scaled);
+    return whole - (static_cast<float>(whole) > scaled ? 1 : 0);
+}
+
+std::uint64_t keyOf(int level, std::int64_t row, std::int64_t column) {
+    return (static_cast<std::uint64_t>(level - lowestLevel) << 56) |
+           ((static_cast<std::uint64_t>(row + cellBias) & cellMask) << 28) |
+           (static_cast<std::uint64_t>(column + cellBias) & cellMask);
+}
+
+int levelOf(const Bounds& box) {
+    const float extent = maxOf(box.high.x - box.low.x, box.high.y - box.low.y);
+    int level = lowestLevel;
+    while (level < highestLevel && cellSize(level) < extent) ++level;
+    return level;
+}
+
+std::uint64_t keyOf(const Bounds& box) {
+    const int level = levelOf(box);
+    const float inverse = 1.0f / cellSize(level);
+    return keyOf(level, cellOf(0.5f * (box.low.y + box.high.y), inverse),
+                 cellOf(0.5f * (box.low.x + box.high.x), inverse));
+}
+
+/// A little room all around, and the way the shape will go in the next ticks.
+Bounds fattened(const Bounds& tight, Vec2 travel) {
+    const float size = maxOf(tight.high.x - tight.low.x, tight.high.y - tight.low.y);
+    const float margin = minOf(0.1f, 0.02f + 0.08f * size);
+    Bounds fat = grown(tight, margin);
+    (travel.x < 0 ? fat.low.x : fat.high.x) += travel.x;
+    (travel.y < 0 ? fat.low.y : fat.high.y) += travel.y;
+    return fat;
+}
+
+bool mayPair(const ShapeProxy& a, const ShapeProxy& b, std::span<const ShapePair> forbidden) {
+    if (a.body == b.body || !(a.dynamic || b.dynamic)) return false;
+    if (!mayTouch(a.filter, b.filter)) return false;
+    if (!(a.jointed && b.jointed)) return true;
+    const ShapePair bodies{std::min(a.body, b.body), std::max(a.body, b.body)};
+    return !std::binary_search(forbidden.begin(), forbidden.end(), bodies);
+}
+
+ShapePair ordered(std::uint32_t a, std::uint32_t b) {
+    return a < b ? ShapePair{a, b} : ShapePair{b, a};
+}
+
+/// Sorts pairs by buckets of `a`: a counting sort, then a handful in each bucket.
+void sortPairs(std::vector<ShapePair>& pairs, std::size_t shapeCount,
+               std::vector<ShapePair>& scratch) {
+    std::vector<std::uint32_t> start(shapeCount + 1, 0);
+    for (const ShapePair& p : pairs) ++start[p.a + 1];
+    for (std::size_t i = 1; i <= shapeCount; ++i) start[i] += start[i - 1];
+    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+    scratch.resize(pairs.size());
+    for (const ShapePair& p : pairs) scratch[next[p.a]++] = p;
+    for (std::size_t i = 0; i < shapeCount; ++i) {
+        std::sort(scratch.begin() + start[i], scratch.begin() + start[i + 1]);
+    }
+    pairs.swap(scratch);
+}
+
+}  // namespace
+
+void BroadPhase::clear() {
+    m_fat.clear();
+    m_entries.clear();
+    m_levels.clear();
+    m_pairs.clear();
+    m_isMoved.clear();
+}
+
+void BroadPhase::rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel) {
+    m_fat.resize(tight.size());
+    m_isMoved.assign(tight.size(), 0);
+    m_entries.resize(tight.size());
+    for (std::uint32_t i = 0; i < tight.size(); ++i) {
+        m_fat[i] = fattened(tight[i], travel[i]);
+        m_entries[i] = {keyOf(m_fat[i]), i, m_fat[i]};
+    }
+    std::sort(m_entries.begin(), m_entries.end(), [](const Entry& a, const Entry& b) {
+        return a.key != b.key ? a.key < b.key : a.shape < b.shape;
+    });
+    findLevels();
+}
+
+void BroadPhase::findLevels() {
+    m_levels.clear();
+    for (std::uint32_t i = 0; i < m_entries.size(); ++i) {
+        const int level = static_cast<int>(m_entries[i].key >> 56) + lowestLevel;
+        if (m_levels.empty() || m_levels.back().level != level) m_levels.push_back({level, i, i});
+        m_levels.back().end = i + 1;
+    }
+}
+
+/// Takes the moved entries out, sorts them by their new cells, and merges them in again.
+void BroadPhase::moveEntries(std::span<const std::uint32_t> moved) {
+    const auto before = [](const Entry& a, const Entry& b) {
+        return a.key != b.key ? a.key < b.key : a.shape < b.shape;
+    };
+    std::vector<Entry> changed;
+    changed.reserve(moved.size());
+    for (const std::uint32_t shape : moved) {
+        changed.push_back({keyOf(m_fat[shape]), shape, m_fat[shape]});
+    }
+    std::sort(changed.begin(), changed.end(), before);
+    std::erase_if(m_entries, [this](const Entry& e) { return m_isMoved[e.shape] != 0; });
+    m_entryScratch.resize(m_entries.size() + changed.size());
+    std::merge(m_entries.begin(), m_entries.end(), changed.begin(), changed.end(),
+               m_entryScratch.begin(), before);
+    m_entries.swap(m_entryScratch);
+    findLevels();
+}
+
+/// Calls `visit(entry)` for the entries of a level whose boxes overlap `box`.
+template <class Visit>
+void BroadPhase::visitOverlaps(const Level& level, const Bounds& box, Visit visit) const {
+    const auto scan = [&](std::uint32_t from, std::uint32_t to, std::uint64_t lastKey) {
+        for (std::uint32_t i = from; i < to && m_entries[i].key <= lastKey; ++i) {
+            if (overlaps(m_entries[i].box, box)) visit(m_entries[i]);
+        }
+    };
+    const float size = cellSize(level.level);
+    const float inverse = 1.0f / size;
+    // Centres of overlapping boxes are at most half a cell beyond this box.
+    const std::int64_t row0 = cellOf(box.low.y - 0.5f * size, inverse);
+    const std::int64_t row1 = cellOf(box.high.y + 0.5f * size, inverse);
+    const std::int64_t column0 = cellOf(box.low.x - 0.5f * size, inverse);
+    const std::int64_t column1 = cellOf(box.high.x + 0.5f * size, inverse);
+    const std::uint32_t population = level.end - level.begin;
+    if (population <= 16 || row1 - row0 >= static_cast<std::int64_t>(population) / 8) {
+        scan(level.begin, level.end, ~std::uint64_t{0});
+        return;
+    }
+    for (std::int64_t row = row0; row <= row1; ++row) {
+        const std::uint64_t first = keyOf(level.level, row, column0);
+        const auto from =
+            std::lower_bound(m_entries.begin() + level.begin, m_entries.begin() + level.end, first,
+                             [](const Entry& e, std::uint64_t key) { return e.key < key; });
+        scan(static_cast<std::uint32_t>(from - m_entries.begin()), level.end,
+             keyOf(level.level, row, column1));
+    }
+}
+
+/// All pairs of an entry of [begin, end) with later ones of its level and with coarser levels.
+void BroadPhase::joinBlock(std::uint32_t begin, std::uint32_t end,
+                           std::span<const ShapeProxy> proxies,
+                           std::span<const ShapePair> forbidden,
+                           std::vector<ShapePair>& out) const {
+    const auto consider = [&](const Entry& e, const Entry& other) {
+        if (mayPair(proxies[e.shape], proxies[other.shape], forbidden)) {
+            out.push_back(ordered(e.shape, other.shape));
+        }
+    };
+    std::uint32_t nextRow = begin;  // cursor into the row above, rising with the entry
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const Entry& e = m_entries[i];
+        const auto levelKey = e.key >> 56;
+        // The same row: this cell and the next.
+        for (std::uint32_t j = i + 1; j < m_entries.size() && m_entries[j].key <= e.key + 1; ++j) {
+            if (overlaps(e.box, m_entries[j].box)) consider(e, m_entries[j]);
+        }
+        // The row above: three cells.
+        const std::uint64_t above = e.key + (std::uint64_t{1} << 28);
+        if (nextRow <= i) nextRow = i + 1;
+        if (nextRow < m_entries.size() && m_entries[nextRow].key + 64 < above) {
+            nextRow = static_cast<std::uint32_t>(
+                std::lower_bound(m_entries.begin() + nextRow, m_entries.end(), above - 1,
+                                 [](const Entry& x, std::uint64_t key) { return x.key < key; }) -
+                m_entries.begin());
+        }
+        while (nextRow < m_entries.size() && m_entries[nextRow].key < above - 1) ++nextRow;
+        for (std::uint32_t j = nextRow; j < m_entries.size() && m_entries[j].key <= above + 1;
+             ++j) {
+            if (overlaps(e.box, m_entries[j].box)) consider(e, m_entries[j]);
+        }
+        for (const Level& level : m_levels) {
+            if (static_cast<std::uint64_t>(level.level - lowestLevel) <= levelKey) continue;
+            visitOverlaps(level, e.box, [&](const Entry& other) { consider(e, other); });
+        }
+    }
+}
+
+void BroadPhase::joinAll(std::span<const ShapeProxy> proxies, std::span<const ShapePair> forbidden,
+                         Executor* executor, std::vector<ShapePair>& out) {
+    const auto count = static_cast<std::uint32_t>(m_entries.size());
+    if (executor == nullptr || executor->threads() == 1 || count < 2048) {
+        joinBlock(0, count, proxies, forbidden, out);
+    } else {
+        std::vector<std::vector<ShapePair>> parts((count + joinGrain - 1) / joinGrain);
+        executor->forBlocks(count, joinGrain, [&](std::uint32_t begin, std::uint32_t end) {
+            joinBlock(begin, end, proxies, forbidden, parts[begin / joinGrain]);
+        });
+        for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
+    }
+    sortPairs(out, m_fat.size(), m_scratch);
+}
+
+/// Pairs without a moved shape stay; those with one are found anew.
+void BroadPhase::joinMoved(std::span<const std::uint32_t> moved,
+                           std::span<const ShapeProxy> proxies,
+                           std::span<const ShapePair> forbidden, std::vector<ShapePair>& out) {
+    std::vector<ShapePair> found;
+    for (const std::uint32_t shape : moved) {
+        for (const Level& level : m_levels) {
+            visitOverlaps(level, m_fat[shape], [&](const Entry& other) {
+                // Two moved shapes find each other: the lower one keeps the pair.
+                if (other.shape == shape || (m_isMoved[other.shape] && other.shape < shape)) return;
+                if (mayPair(proxies[shape], proxies[other.shape], forbidden)) {
+                    found.push_back(ordered(shape, other.shape));
+                }
+            });
+        }
+    }
+    std::sort(found.begin(), found.end());
+    m_scratch.clear();
+    for (const ShapePair& p : m_pairs) {
+        if (!(m_isMoved[p.a] | m_isMoved[p.b])) m_scratch.push_back(p);
+    }
+    out.resize(m_scratch.size() + found.size());
+    std::merge(m_scratch.begin(), m_scratch.end(), found.begin(), found.end(), out.begin());
+}
+
+bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> travel,
+                        std::span<const std::uint32_t> active, std::span<const ShapeProxy> proxies,
+                        std::span<const ShapePair> forbidden, Executor* executor) {
+    std::vector<ShapePair> fresh;
+    if (m_fat.size() != tight.size()) {
+        m_movedCount = static_cast<std::uint32_t>(tight.size());
+        rebuildAll(tight, travel);
+        joinAll(proxies, forbidden, executor, fresh);
+        m_pairs.swap(fresh);
+        return true;
+    }
+    std::vector<std::uint32_t> moved;
+    for (const std::uint32_t shape : active) {
+        if (!contains(m_fat[shape], tight[shape])) moved.push_back(shape);
+    }
+    m_movedCount = static_cast<std::uint32_t>(moved.size());
+    if (moved.empty()) return false;
+    for (const std::uint32_t shape : moved) {
+        m_fat[shape] = fattened(tight[shape], travel[shape]);
+        m_isMoved[shape] = 1;
+    }
+    moveEntries(moved);
+    // A query searches every level from its top, a step of the join moves a cursor: several times
+    // cheaper. Either way the same pairs come out.
+    if (moved.size() * 4 > tight.size()) {
+        joinAll(proxies, forbidden, executor, fresh);
+    } else {
+        joinMoved(moved, proxies, forbidden, fresh);
+    }
+    for (const std::uint32_t shape : moved) m_isMoved[shape] = 0;
+    const bool changed = fresh != m_pairs;
+    m_pairs.swap(fresh);
+    return changed;
+}
+
+void BroadPhase::query(const Bounds& box, std::vector<std::uint32_t>& out) const {
+    for (const Level& level : m_levels) {
+        visitOverlaps(level, box, [&](const Entry& entry) { out.push_back(entry.shape); });
+    }
+}
+
+}  // namespace huestep

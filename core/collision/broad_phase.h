@@ -1,0 +1,93 @@
+/// The broad phase: which pairs of shapes are near enough to be looked at.
+///
+/// An accelerator only. It keeps a fat box around every shape and the sorted list of pairs whose
+/// fat boxes overlap; whoever reads the list tests the tight bounds, so no result can depend on
+/// how fat the boxes are or when they were renewed.
+///
+/// Method: a hierarchical grid without pointers. A fat box of extent e lives in the cell of its
+/// centre on the level of cell size 2^l ≥ e; boxes of one level overlap only if their cells are
+/// neighbours. Entries are sorted by (level, row, column), so neighbours are three contiguous runs.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "core/parallel/executor.h"
+#include "core/scene/scene.h"
+
+namespace huestep {
+
+/// What decides, before any geometry, whether two shapes may form a pair.
+struct ShapeProxy {
+    std::uint32_t body = 0;  ///< place of the body
+    Filter filter;
+    bool dynamic = false;
+    bool jointed = false;  ///< the body has a joint that forbids contact with its other body
+};
+
+/// Places of two shapes, a < b.
+struct ShapePair {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    friend auto operator<=>(const ShapePair&, const ShapePair&) = default;
+};
+
+class BroadPhase {
+ public:
+    /// Forgets everything; the next update starts from nothing.
+    void clear();
+
+    /// Brings the pair list up to date. `tight`: bounds by shape; `travel`: how far each shape may
+    /// move in a few ticks (m), a hint; `active`: places of shapes that may have moved, others have
+    /// not; `forbidden`: sorted pairs of body places that a joint keeps from touching.
+    /// Returns whether `pairs()` changed.
+    bool update(std::span<const Bounds> tight, std::span<const Vec2> travel,
+                std::span<const std::uint32_t> active, std::span<const ShapeProxy> proxies,
+                std::span<const ShapePair> forbidden, Executor* executor);
+
+    /// Sorted by (a, b).
+    [[nodiscard]] std::span<const ShapePair> pairs() const { return m_pairs; }
+
+    /// Places of shapes whose fat box overlaps the box, in no particular order.
+    void query(const Bounds& box, std::vector<std::uint32_t>& out) const;
+
+    /// Shapes that left their fat box in the last update.
+    [[nodiscard]] std::uint32_t movedCount() const { return m_movedCount; }
+
+ private:
+    struct Entry {
+        std::uint64_t key = 0;
+        std::uint32_t shape = 0;
+        Bounds box;
+    };
+    struct Level {
+        int level = 0;
+        std::uint32_t begin = 0;
+        std::uint32_t end = 0;
+    };
+
+    void rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel);
+    void moveEntries(std::span<const std::uint32_t> moved);
+    void findLevels();
+    template <class Visit>
+    void visitOverlaps(const Level& level, const Bounds& box, Visit visit) const;
+    void joinBlock(std::uint32_t begin, std::uint32_t end, std::span<const ShapeProxy> proxies,
+                   std::span<const ShapePair> forbidden, std::vector<ShapePair>& out) const;
+    void joinAll(std::span<const ShapeProxy> proxies, std::span<const ShapePair> forbidden,
+                 Executor* executor, std::vector<ShapePair>& out);
+    void joinMoved(std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
+                   std::span<const ShapePair> forbidden, std::vector<ShapePair>& out);
+
+    std::vector<Bounds> m_fat;     // by shape
+    std::vector<Entry> m_entries;  // sorted by key, then shape
+    std::vector<Level> m_levels;
+    std::vector<ShapePair> m_pairs;
+    std::vector<std::uint8_t> m_isMoved;  // by shape; all zero between updates
+    std::vector<ShapePair> m_scratch;
+    std::vector<Entry> m_entryScratch;
+    std::uint32_t m_movedCount = 0;
+};
+
+}  // namespace huestep

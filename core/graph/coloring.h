@@ -1,0 +1,33 @@
+/// Colouring: constraints of one colour share no body that moves, so they can be solved side by
+/// side and still be Gauss-Seidel from colour to colour.
+///
+/// Colour from nothing: first fit over the sorted list, with one 64-bit mask a body. A pure
+/// function of the list; nothing is kept from step to step (design, "Colour from nothing").
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/solver/contact_block.h"
+
+namespace huestep {
+
+/// Colours in the order in which they are solved.
+inline constexpr std::uint8_t overflowColour = 64;    ///< after 0 … 63; solved one by one
+inline constexpr std::uint8_t firstFixedColour = 65;  ///< against static or kinematic bodies
+inline constexpr int colourCount = 129;
+
+/// The bodies of a constraint; negative: one that is never written (see `BodyPlace`).
+struct ConstraintBodies {
+    BodyPlace a = fixedWorld;
+    BodyPlace b = fixedWorld;
+};
+
+/// A colour for each constraint. Places are below `bodyCount`. Constraints between two moving
+/// bodies get the lowest colour below 64 that is free at both, those with one the lowest from 65;
+/// what finds none goes to the overflow.
+void color(std::span<const ConstraintBodies> constraints, std::uint32_t bodyCount,
+           std::vector<std::uint8_t>& colours);
+
+}  // namespace huestep

@@ -1,0 +1,217 @@
+#include "core/graph/plan.h"
+
+#include <algorithm>
+#include <array>
+
+namespace huestep {
+
+namespace {
+
+/// Working memory of one call.
+struct Builder {
+    Plan& plan;
+    const PlanBodies& bodies;
+    std::uint32_t batchSize;
+
+    std::vector<std::uint32_t> constraintsOf;  // island representative → constraints
+    std::vector<std::uint32_t> batchOf;        // island representative → batch
+    std::vector<std::uint32_t> linkOrder;      // links by batch, key order within
+    std::vector<std::uint32_t> linkStart;      // batch → first in linkOrder
+    std::vector<BodyPlace> placeOf;            // body → solver place, in the batch at hand
+
+    [[nodiscard]] std::uint32_t islandOf(const Link& link) const {
+        return plan.islandOf[bodies.moves[link.a] ? link.a : link.b];
+    }
+
+    void findAllIslands();
+    void packBatches();
+    void sortLinks();
+    void placeBodies(std::uint32_t batch);
+    void colourBatch(std::uint32_t batch);
+    void layOut(std::uint32_t batch, std::span<const ConstraintBodies> places,
+                std::span<const std::uint8_t> colours);
+};
+
+void Builder::findAllIslands() {
+    const auto count = static_cast<std::uint32_t>(bodies.moves.size());
+    UnionFind sets;
+    findIslands(plan.links, bodies.moves, sets);
+    plan.islandOf.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i) plan.islandOf[i] = sets.find(i);
+    constraintsOf.assign(count, 0);
+    for (const Link& link : plan.links) ++constraintsOf[islandOf(link)];
+}
+
+/// Islands in the order of their lowest body fill batches; one that is larger than a batch gets
+/// one to itself. Sizes alone decide.
+void Builder::packBatches() {
+    batchOf.assign(constraintsOf.size(), none);
+    plan.batches.clear();
+    plan.freeBodies.clear();
+    plan.islands = 0;
+    std::uint32_t open = none;  // the batch that small islands still go to
+    for (const std::uint32_t body : plan.awake) {
+        if (plan.islandOf[body] != body) continue;
+        const std::uint32_t size = constraintsOf[body];
+        if (size == 0) {
+            plan.freeBodies.push_back(body);
+            continue;
+        }
+        ++plan.islands;
+        const bool giant = size > batchSize;
+        if (giant || open == none || plan.batches[open].constraints + size > batchSize) {
+            const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
+            plan.batches.push_back({});
+            plan.batches.back().giant = giant;
+            batchOf[body] = fresh;
+            if (!giant) open = fresh;
+        } else {
+            batchOf[body] = open;
+        }
+        plan.batches[batchOf[body]].constraints += size;
+    }
+}
+
+void Builder::sortLinks() {
+    linkStart.assign(plan.batches.size() + 1, 0);
+    for (const Link& link : plan.links) ++linkStart[batchOf[islandOf(link)] + 1];
+    for (std::size_t i = 1; i < linkStart.size(); ++i) linkStart[i] += linkStart[i - 1];
+    std::vector<std::uint32_t> next(linkStart.begin(), linkStart.end() - 1);
+    linkOrder.resize(plan.links.size());
+    for (std::uint32_t i = 0; i < plan.links.size(); ++i) {
+        linkOrder[next[batchOf[islandOf(plan.links[i])]]++] = i;
+    }
+}
+
+/// The batch's solver bodies: copies of the kinematic bodies it touches, then its own by id.
+/// (`plan.bodyOfPlace` holds the own bodies of all batches before; see makePlan.)
+void Builder::placeBodies(std::uint32_t batch) {
+    Batch& b = plan.batches[batch];
+    b.firstPlace = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
+    const auto place = [&](std::uint32_t body) {
+        placeOf[body] = static_cast<BodyPlace>(plan.bodyOfPlace.size());
+        plan.bodyOfPlace.push_back(body);
+    };
+    for (std::uint32_t i = linkStart[batch]; i < linkStart[batch + 1]; ++i) {
+        const Link& link = plan.links[linkOrder[i]];
+        for (const std::uint32_t body : {link.a, link.b}) {
+            if (!bodies.kinematic[body]) continue;
+            const BodyPlace known = placeOf[body];
+            if (known == fixedWorld || static_cast<std::uint32_t>(known) < b.firstPlace) {
+                place(body);
+            }
+        }
+    }
+}
+
+void Builder::colourBatch(std::uint32_t batch) {
+    const Batch& b = plan.batches[batch];
+    std::vector<ConstraintBodies> places;
+    std::vector<ConstraintBodies> local;  // counted from the batch's first body
+    const auto first = static_cast<BodyPlace>(b.firstPlace);
+    for (std::uint32_t i = linkStart[batch]; i < linkStart[batch + 1]; ++i) {
+        const Link& link = plan.links[linkOrder[i]];
+        const auto placeFor = [&](std::uint32_t body) -> BodyPlace {
+            if (bodies.moves[body]) return placeOf[body];
+            return bodies.kinematic[body] ? ~placeOf[body] : fixedWorld;
+        };
+        const ConstraintBodies c{placeFor(link.a), placeFor(link.b)};
+        places.push_back(c);
+        local.push_back({c.a >= 0 ? c.a - first : fixedWorld, c.b >= 0 ? c.b - first : fixedWorld});
+    }
+    std::vector<std::uint8_t> colours;
+    color(local, b.endPlace - b.firstPlace, colours);
+    layOut(batch, places, colours);
+}
+
+/// Runs of the batch in solving order; within a colour joints come first, then contacts, each in
+/// key order, contacts in blocks of 16 lanes of which the last is padded.
+void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> places,
+                     std::span<const std::uint8_t> colours) {
+    std::array<std::uint32_t, colourCount> contacts{};
+    std::array<std::uint32_t, colourCount> joints{};
+    const std::uint32_t begin = linkStart[batch];
+    for (std::uint32_t i = 0; i < colours.size(); ++i) {
+        const std::uint32_t link = linkOrder[begin + i];
+        plan.colourOfLink[link] = colours[i];
+        ++(link < plan.jointLinks ? joints : contacts)[colours[i]];
+    }
+    Batch& b = plan.batches[batch];
+    b.firstColour = static_cast<std::uint32_t>(plan.runs.size());
+    std::array<std::uint32_t, colourCount> nextLane{};
+    std::array<std::uint32_t, colourCount> nextJoint{};
+    for (std::size_t c = 0; c < colourCount; ++c) {
+        if (contacts[c] + joints[c] == 0) continue;
+        ColourRun run;
+        run.colour = static_cast<std::uint8_t>(c);
+        run.firstBlock = static_cast<std::uint32_t>(plan.contactOfLane.size()) / blockLanes;
+        run.contactCount = contacts[c];
+        run.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
+        run.jointCount = joints[c];
+        plan.runs.push_back(run);
+        nextLane[c] = run.firstBlock * blockLanes;
+        nextJoint[c] = run.firstJoint;
+        const std::uint32_t lanes = (contacts[c] + blockLanes - 1) / blockLanes * blockLanes;
+        plan.contactOfLane.resize(plan.contactOfLane.size() + lanes, none);
+        plan.lanePlaces.resize(plan.contactOfLane.size());
+        plan.jointOrder.resize(plan.jointOrder.size() + joints[c]);
+        plan.jointPlaces.resize(plan.jointOrder.size());
+    }
+    b.endColour = static_cast<std::uint32_t>(plan.runs.size());
+    plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
+    plan.overflow += contacts[overflowColour] + joints[overflowColour];
+    for (std::uint32_t i = 0; i < colours.size(); ++i) {
+        const std::uint32_t link = linkOrder[begin + i];
+        if (link < plan.jointLinks) {
+            const std::uint32_t at = nextJoint[colours[i]]++;
+            plan.jointOrder[at] = plan.links[link].source;
+            plan.jointPlaces[at] = places[i];
+        } else {
+            const std::uint32_t at = nextLane[colours[i]]++;
+            plan.contactOfLane[at] = plan.links[link].source;
+            plan.lanePlaces[at] = places[i];
+        }
+    }
+}
+
+}  // namespace
+
+void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
+              std::vector<std::uint32_t>&& awake, const PlanBodies& bodies,
+              std::uint32_t batchSize) {
+    plan.links = std::move(links);
+    plan.jointLinks = jointLinks;
+    plan.awake = std::move(awake);
+    plan.runs.clear();
+    plan.contactOfLane.clear();
+    plan.lanePlaces.clear();
+    plan.jointOrder.clear();
+    plan.jointPlaces.clear();
+    plan.colourOfLink.assign(plan.links.size(), 0);
+    plan.colours = plan.overflow = 0;
+
+    Builder builder{plan, bodies, batchSize, {}, {}, {}, {}, {}};
+    builder.findAllIslands();
+    builder.packBatches();
+    builder.sortLinks();
+    builder.placeOf.assign(bodies.moves.size(), fixedWorld);
+    plan.bodyOfPlace.assign(1, none);
+
+    // Own bodies of every batch, by id: one walk over the awake bodies into buckets.
+    std::vector<std::vector<std::uint32_t>> own(plan.batches.size());
+    for (const std::uint32_t body : plan.awake) {
+        const std::uint32_t batch = builder.batchOf[plan.islandOf[body]];
+        if (batch != none) own[batch].push_back(body);
+    }
+    for (std::uint32_t batch = 0; batch < plan.batches.size(); ++batch) {
+        builder.placeBodies(batch);
+        for (const std::uint32_t body : own[batch]) {
+            builder.placeOf[body] = static_cast<BodyPlace>(plan.bodyOfPlace.size());
+            plan.bodyOfPlace.push_back(body);
+        }
+        plan.batches[batch].endPlace = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
+        builder.colourBatch(batch);
+    }
+}
+
+}  // namespace huestep

@@ -1,0 +1,73 @@
+/// The plan of a step: which constraints are solved where and in which order.
+///
+/// A pure function of the links and of which bodies move. It is kept from step to step and made
+/// again whenever the links differ.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/graph/coloring.h"
+#include "core/graph/islands.h"
+#include "core/state/records.h"
+
+namespace huestep {
+
+inline constexpr std::uint32_t none = 0xffffffffu;
+
+/// Constraints of one colour of one batch: a run of contact blocks and a run of joints.
+struct ColourRun {
+    std::uint32_t firstBlock = 0;
+    std::uint32_t contactCount = 0;
+    std::uint32_t firstJoint = 0;
+    std::uint32_t jointCount = 0;
+    std::uint8_t colour = 0;
+};
+
+/// Whole islands that one thread solves through all substeps without a barrier, or one island that
+/// is larger than a batch and is solved by all threads, a barrier a colour.
+struct Batch {
+    std::uint32_t firstPlace = 0, endPlace = 0;    ///< solver bodies
+    std::uint32_t firstColour = 0, endColour = 0;  ///< runs
+    std::uint32_t constraints = 0;
+    bool giant = false;
+};
+
+/// Constraints that a batch may have: about 150 kB of rows, which a core's second-level cache
+/// holds.
+inline constexpr std::uint32_t standardBatchSize = 1024;
+
+struct Plan {
+    std::vector<Link> links;           ///< made from; joints first
+    std::uint32_t jointLinks = 0;      ///< how many of them are joints
+    std::vector<std::uint32_t> awake;  ///< places of awake dynamic bodies, rising; made from
+
+    std::vector<std::uint32_t> bodyOfPlace;  ///< solver place → body; place 0: none
+    std::vector<Batch> batches;
+    std::vector<ColourRun> runs;
+    std::vector<std::uint32_t> contactOfLane;  ///< block · 16 + lane → contact, or `none`
+    std::vector<ConstraintBodies> lanePlaces;  ///< likewise → solver places
+    std::vector<std::uint32_t> jointOrder;     ///< in solver order → joint
+    std::vector<ConstraintBodies> jointPlaces;
+    std::vector<std::uint32_t> freeBodies;  ///< awake bodies without a constraint
+    std::vector<std::uint32_t> islandOf;    ///< body → lowest body of its island
+    std::vector<std::uint8_t> colourOfLink;
+    std::uint32_t islands = 0;
+    std::uint32_t colours = 0;   ///< most in any batch
+    std::uint32_t overflow = 0;  ///< constraints in overflow
+};
+
+/// What the plan needs to know of the bodies; place i is body i.
+struct PlanBodies {
+    std::span<const std::uint8_t> moves;      ///< awake and dynamic
+    std::span<const std::uint8_t> kinematic;  ///< read by the solver, with a velocity
+};
+
+/// Makes the plan. `links` and `awake` are moved in; `batchSize` may differ in tests only: no
+/// result depends on it.
+void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
+              std::vector<std::uint32_t>&& awake, const PlanBodies& bodies,
+              std::uint32_t batchSize = standardBatchSize);
+
+}  // namespace huestep

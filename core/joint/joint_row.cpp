@@ -1,0 +1,172 @@
+#include "core/joint/joint_row.h"
+
+#include "core/joint/parts.h"
+#include "core/math/finite.h"
+#include "core/math/trig.h"
+
+namespace huestep {
+
+namespace {
+
+const Softness relaxed{};  // no bias, full mass, nothing kept back
+
+JointBodies load(const SolverBody* bodies, const JointRow& row) {
+    const SolverBody& a = bodies[readPlace(row.bodyA)];
+    const SolverBody& b = bodies[readPlace(row.bodyB)];
+    return {{a.vx, a.vy}, {b.vx, b.vy}, a.w, b.w, row.mA, row.iA, row.mB, row.iB};
+}
+
+void store(SolverBody* bodies, const JointRow& row, const JointBodies& now) {
+    if (row.bodyA >= 0) {
+        SolverBody& a = bodies[row.bodyA];
+        a.vx = now.vA.x;
+        a.vy = now.vA.y;
+        a.w = now.wA;
+    }
+    if (row.bodyB >= 0) {
+        SolverBody& b = bodies[row.bodyB];
+        b.vx = now.vB.x;
+        b.vy = now.vB.y;
+        b.w = now.wB;
+    }
+}
+
+/// Where the anchors are by now. Joint rows turn their anchors every substep: with fixed ones a
+/// pendulum loses a third of its energy (physics page, 5).
+struct Geometry {
+    Vec2 rA, rB;   // from the centres
+    Vec2 between;  // anchor B less anchor A
+};
+
+Geometry geometry(const SolverBody* bodies, const JointRow& row) {
+    const SolverBody& a = bodies[readPlace(row.bodyA)];
+    const SolverBody& b = bodies[readPlace(row.bodyB)];
+    Geometry g;
+    g.rA = rotate(Rotation{a.dc, a.ds}, row.anchorA);
+    g.rB = rotate(Rotation{b.dc, b.ds}, row.anchorB);
+    g.between = (Vec2{b.dx - a.dx, b.dy - a.dy} + row.centers) + (g.rB - g.rA);
+    return g;
+}
+
+float angleNow(const SolverBody* bodies, const JointRow& row) {
+    const SolverBody& a = bodies[readPlace(row.bodyA)];
+    const SolverBody& b = bodies[readPlace(row.bodyB)];
+    const Rotation turned = relative(Rotation{a.dc, a.ds}, Rotation{b.dc, b.ds});
+    return angleOf(compose(turned, row.angle));
+}
+
+void solveRevolute(SolverBody* bodies, JointRow& row, const JointPass& pass) {
+    JointBodies b = load(bodies, row);
+    const AxisPart axis;
+    const bool springs = (row.flags & JointInfo::spring) != 0;
+    const bool limits = (row.flags & JointInfo::limit) != 0;
+    const float angle = springs || limits ? angleNow(bodies, row) : 0.0f;
+    if (springs) solveHold(b, axis, angle, row.spring, row.impulses.spring);
+    if ((row.flags & JointInfo::motor) != 0) {
+        solveMotor(b, axis, row.motorSpeed, pass.h * row.motorMaxEffort, row.impulses.motor);
+    }
+    if (limits) {
+        solveLimit(b, axis, 1.0f, angle - row.lower, pass.inverseH, pass.soft, row.impulses.lower);
+        solveLimit(b, axis, -1.0f, row.upper - angle, pass.inverseH, pass.soft, row.impulses.upper);
+    }
+    const Geometry g = geometry(bodies, row);
+    PointPart::solve(b, g.rA, g.rB, g.between, pass.soft, row.impulses.point);
+    store(bodies, row, b);
+}
+
+LinePart lineOf(const Geometry& g, float& lengthNow) {
+    lengthNow = length(g.between);
+    const Vec2 u = lengthNow > 1e-6f ? (1.0f / lengthNow) * g.between : Vec2{};
+    return {g.rA, g.rB, u};
+}
+
+void solveDistance(SolverBody* bodies, JointRow& row, const JointPass& pass) {
+    JointBodies b = load(bodies, row);
+    float now = 0;
+    const LinePart line = lineOf(geometry(bodies, row), now);
+    const bool springs = (row.flags & JointInfo::spring) != 0;
+    const bool ranges = (row.flags & JointInfo::limit) != 0;
+    if (springs) solveHold(b, line, now - row.length, row.spring, row.impulses.spring);
+    if ((row.flags & JointInfo::motor) != 0) {
+        solveMotor(b, line, row.motorSpeed, pass.h * row.motorMaxEffort, row.impulses.motor);
+    }
+    if (ranges) {
+        solveLimit(b, line, 1.0f, now - row.lower, pass.inverseH, pass.soft, row.impulses.lower);
+        solveLimit(b, line, -1.0f, row.upper - now, pass.inverseH, pass.soft, row.impulses.upper);
+    }
+    if (!springs && !ranges) {
+        solveHold(b, line, now - row.length, pass.soft, row.impulses.point.x);
+    }
+    store(bodies, row, b);
+}
+
+void solveMouse(SolverBody* bodies, JointRow& row, const JointPass& pass) {
+    JointBodies b = load(bodies, row);
+    const Geometry g = geometry(bodies, row);
+    PointPart::solve(b, g.rA, g.rB, g.between, row.spring, row.impulses.point,
+                     pass.h * row.maxForce);
+    store(bodies, row, b);
+}
+
+}  // namespace
+
+JointRow prepareJoint(const JointInfo& info, const JointImpulses& impulses, std::uint32_t place,
+                      const Pose& poseA, const Pose& poseB, float h) {
+    JointRow row;
+    row.kind = info.kind();
+    row.flags = info.flags;
+    row.joint = place;
+    row.anchorA = rotate(poseA.q, info.anchorA);
+    row.anchorB = rotate(poseB.q, info.anchorB);
+    row.centers = poseB.p - (row.kind == JointKind::Mouse ? info.target : poseA.p);
+    row.angle = relative(info.reference, relative(poseA.q, poseB.q));
+    row.length = info.length;
+    row.lower = info.lower;
+    row.upper = info.upper;
+    row.motorSpeed = info.motorSpeed;
+    row.motorMaxEffort = info.motorMaxEffort;
+    row.maxForce = info.maxForce;
+    row.spring = softness(info.springHertz, info.springDamping, h);
+    row.impulses = impulses;
+    return row;
+}
+
+void warmStartJoint(SolverBody* bodies, const JointRow& row) {
+    JointBodies b = load(bodies, row);
+    const Geometry g = geometry(bodies, row);
+    const JointImpulses& l = row.impulses;
+    const float axial = l.spring + l.motor + l.lower - l.upper;
+    if (row.kind == JointKind::Distance) {
+        float now = 0;
+        const LinePart line = lineOf(g, now);
+        line.apply(b, axial + l.point.x);
+    } else {
+        applyLinear(b, g.rA, g.rB, l.point);
+        applyAngular(b, axial);
+    }
+    store(bodies, row, b);
+}
+
+void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass) {
+    JointPass now = pass;
+    if (!pass.bias) now.soft = relaxed;
+    switch (row.kind) {
+        case JointKind::Revolute:
+            return solveRevolute(bodies, row, now);
+        case JointKind::Distance:
+            return solveDistance(bodies, row, now);
+        case JointKind::Mouse:
+            return solveMouse(bodies, row, now);
+    }
+}
+
+JointImpulses storedImpulses(const JointRow& row) {
+    const JointImpulses& l = row.impulses;
+    return {{finiteOrZero(l.point.x), finiteOrZero(l.point.y)},
+            finiteOrZero(l.spring),
+            finiteOrZero(l.motor),
+            finiteOrZero(l.lower),
+            finiteOrZero(l.upper)};
+}
+
+}  // namespace huestep

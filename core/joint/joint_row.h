@@ -1,0 +1,46 @@
+/// Joints as the solver works on them: prepared once a step, passed over every substep.
+#pragma once
+
+#include <cstdint>
+
+#include "core/solver/contact_block.h"
+#include "core/state/records.h"
+
+namespace huestep {
+
+/// A joint with everything a pass needs beside the two bodies.
+struct JointRow {
+    JointKind kind = JointKind::Revolute;
+    std::uint32_t flags = 0;  ///< of JointInfo
+    std::uint32_t joint = 0;  ///< place in the world's joints
+    BodyPlace bodyA = fixedWorld;
+    BodyPlace bodyB = fixedWorld;
+    float mA = 0, iA = 0, mB = 0, iB = 0;
+    Vec2 anchorA, anchorB;  ///< from the centres, world axes, at the start of the step
+    Vec2 centers;           ///< cB − cA at the start; mouse: cB − target
+    Rotation angle;         ///< revolute: coordinate at the start, as a rotation
+    float length = 0, lower = 0, upper = 0;
+    float motorSpeed = 0, motorMaxEffort = 0, maxForce = 0;
+    Softness spring;
+    JointImpulses impulses;
+};
+
+/// Constants of a pass over joints.
+struct JointPass {
+    float h = 0;
+    float inverseH = 0;
+    Softness soft;      ///< of rigid parts; neutral in relax
+    bool bias = false;  ///< whether position errors are pushed back
+};
+
+/// `poseA`, `poseB`: at the start of the step; the fixed world's pose is the identity.
+JointRow prepareJoint(const JointInfo& info, const JointImpulses& impulses, std::uint32_t place,
+                      const Pose& poseA, const Pose& poseB, float h);
+
+void warmStartJoint(SolverBody* bodies, const JointRow& row);
+void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass);
+
+/// Turns impulses into canonical form for the state; a non-finite one becomes 0.
+JointImpulses storedImpulses(const JointRow& row);
+
+}  // namespace huestep

@@ -1,0 +1,129 @@
+/// Constraint parts: the rows that joints are composed of.
+///
+/// Each part knows one constraint C(x) = 0 or C(x) ≥ 0, its velocity Ċ = J v, its effective mass
+/// (J M⁻¹ Jᵀ)⁻¹ and its accumulated impulse λ. A joint is a list of parts (design, "Habits" 9).
+///
+///   v, w         velocity of a body's centre (m/s) and rate of turn (rad/s)
+///   mA, iA, …    inverse mass (1/kg) and inverse inertia (1/(kg·m²)) of A; 0: not moved
+///   rA, rB       anchors from the bodies' centres, world axes, as turned by now (m)
+///   soft         coefficients of the soft row, see `Softness`
+///
+/// The velocity step of a soft row is  Δλ = −m·massScale·(Ċ + biasRate·C) − impulseScale·λ.
+#pragma once
+
+#include "core/math/vec.h"
+#include "core/solver/contact_block.h"
+
+namespace huestep {
+
+/// Velocities and inverse masses of the two bodies of a joint, held while its parts are solved.
+struct JointBodies {
+    Vec2 vA, vB;
+    float wA = 0, wB = 0;
+    float mA = 0, iA = 0, mB = 0, iB = 0;
+};
+
+/// A linear impulse p at the anchors: +p on B, −p on A.
+inline void applyLinear(JointBodies& b, Vec2 rA, Vec2 rB, Vec2 p) {
+    b.vA -= b.mA * p;
+    b.wA -= b.iA * cross(rA, p);
+    b.vB += b.mB * p;
+    b.wB += b.iB * cross(rB, p);
+}
+
+/// An angular impulse: +l on B, −l on A.
+inline void applyAngular(JointBodies& b, float l) {
+    b.wA -= b.iA * l;
+    b.wB += b.iB * l;
+}
+
+inline Vec2 anchorVelocity(const JointBodies& b, Vec2 rA, Vec2 rB) {
+    return (b.vB + crossScalar(b.wB, rB)) - (b.vA + crossScalar(b.wA, rA));
+}
+
+/// Two points coincide: C = (cB + rB) − (cA + rA), two rows solved together.
+///   K = (mA + mB) 1 + iA [ rAy², −rAx rAy; −rAx rAy, rAx² ] + iB [ likewise ]
+struct PointPart {
+    static void solve(JointBodies& b, Vec2 rA, Vec2 rB, Vec2 error, const Softness& soft,
+                      Vec2& impulse, float maxImpulse = -1.0f) {
+        const float m = b.mA + b.mB;
+        const float k11 = m + b.iA * rA.y * rA.y + b.iB * rB.y * rB.y;
+        const float k12 = -(b.iA * rA.x * rA.y) - b.iB * rB.x * rB.y;
+        const float k22 = m + b.iA * rA.x * rA.x + b.iB * rB.x * rB.x;
+        const float determinant = k11 * k22 - k12 * k12;
+        const float inverse = determinant > 0.0f ? 1.0f / determinant : 0.0f;
+        const Vec2 rhs = anchorVelocity(b, rA, rB) + soft.biasRate * error;
+        const Vec2 rigid{inverse * (k22 * rhs.x - k12 * rhs.y),
+                         inverse * (k11 * rhs.y - k12 * rhs.x)};
+        const Vec2 old = impulse;
+        impulse = (old - soft.massScale * rigid) - soft.impulseScale * old;
+        if (maxImpulse >= 0.0f) {
+            const float l = length(impulse);
+            if (l > maxImpulse) impulse = (maxImpulse / l) * impulse;
+        }
+        applyLinear(b, rA, rB, impulse - old);
+    }
+};
+
+/// The relative angle of two bodies, free to turn: rows about the joint's axis.
+/// Effective mass 1 / (iA + iB).
+struct AxisPart {
+    static float mass(const JointBodies& b) {
+        const float k = b.iA + b.iB;
+        return k > 0.0f ? 1.0f / k : 0.0f;
+    }
+    static float rate(const JointBodies& b) { return b.wB - b.wA; }
+    static void apply(JointBodies& b, float l) { applyAngular(b, l); }
+};
+
+/// The distance of two anchors along the unit axis u from A's to B's.
+/// Effective mass 1 / (mA + mB + iA (rA×u)² + iB (rB×u)²).
+struct LinePart {
+    Vec2 rA, rB, u;
+    [[nodiscard]] float mass(const JointBodies& b) const {
+        const float crossA = cross(rA, u);
+        const float crossB = cross(rB, u);
+        const float k = b.mA + b.mB + b.iA * crossA * crossA + b.iB * crossB * crossB;
+        return k > 0.0f ? 1.0f / k : 0.0f;
+    }
+    [[nodiscard]] float rate(const JointBodies& b) const {
+        return dot(u, anchorVelocity(b, rA, rB));
+    }
+    void apply(JointBodies& b, float l) const { applyLinear(b, rA, rB, l * u); }
+};
+
+/// A coordinate held at 0, softly: a spring, or a rigid part with the joint's softness.
+template <class Coordinate>
+void solveHold(JointBodies& b, const Coordinate& q, float error, const Softness& soft,
+               float& impulse) {
+    const float rhs = q.rate(b) + soft.biasRate * error;
+    const float delta = -(q.mass(b) * soft.massScale * rhs) - soft.impulseScale * impulse;
+    impulse += delta;
+    q.apply(b, delta);
+}
+
+/// A coordinate driven at a speed with at most `maxImpulse` a substep.
+template <class Coordinate>
+void solveMotor(JointBodies& b, const Coordinate& q, float speed, float maxImpulse,
+                float& impulse) {
+    const float old = impulse;
+    impulse = clampTo(old - q.mass(b) * (q.rate(b) - speed), -maxImpulse, maxImpulse);
+    q.apply(b, impulse - old);
+}
+
+/// C ≥ 0 with λ ≥ 0 in the direction `sign` of the coordinate: +1 for a lower bound, −1 for an
+/// upper one. While C > 0 the bound may be reached within the substep, no faster.
+template <class Coordinate>
+void solveLimit(JointBodies& b, const Coordinate& q, float sign, float gap, float inverseH,
+                const Softness& soft, float& impulse) {
+    const bool open = gap > 0.0f;
+    const float bias = open ? gap * inverseH : soft.biasRate * gap;
+    const float massScale = open ? 1.0f : soft.massScale;
+    const float keep = open ? 0.0f : soft.impulseScale;
+    const float old = impulse;
+    const float delta = -(q.mass(b) * massScale * (sign * q.rate(b) + bias)) - keep * old;
+    impulse = maxOf(old + delta, 0.0f);
+    q.apply(b, sign * (impulse - old));
+}
+
+}  // namespace huestep

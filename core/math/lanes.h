@@ -1,0 +1,85 @@
+/// SIMD lanes by vector extensions: W floats that are worked on side by side.
+///
+/// Every operation is the IEEE operation of a single float in each lane, so results do not depend
+/// on W. There is no fused multiply-add, no approximate reciprocal; minimum and maximum are a
+/// compare and a select. `Lanes<1>` is plain float: the scalar build of the same source.
+///
+/// Code that uses Lanes<8> or Lanes<16> is always inlined into an entry function with a `target`
+/// attribute, so one translation unit holds all widths and no other unit needs -m flags.
+#pragma once
+
+#include <cstdint>
+
+#define HUESTEP_INLINE __attribute__((always_inline)) inline
+
+// Wide vectors never cross a real call here, so the calling convention they would change is unused.
+#if defined(__GNUC__) || defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+namespace huestep {
+
+template <int W>
+struct Lanes;
+
+template <>
+struct Lanes<1> {
+    using F = float;
+    using Mask = bool;
+};
+template <>
+struct Lanes<4> {
+    typedef float F __attribute__((vector_size(16)));
+    typedef std::int32_t Mask __attribute__((vector_size(16)));
+};
+template <>
+struct Lanes<8> {
+    typedef float F __attribute__((vector_size(32)));
+    typedef std::int32_t Mask __attribute__((vector_size(32)));
+};
+template <>
+struct Lanes<16> {
+    typedef float F __attribute__((vector_size(64)));
+    typedef std::int32_t Mask __attribute__((vector_size(64)));
+};
+
+template <int W>
+using LaneF = typename Lanes<W>::F;
+
+template <int W>
+HUESTEP_INLINE LaneF<W> loadLanes(const float* from) {
+    typedef LaneF<W> Unaligned __attribute__((aligned(4), may_alias));
+    return *reinterpret_cast<const Unaligned*>(from);
+}
+
+template <int W>
+HUESTEP_INLINE void storeLanes(float* to, const LaneF<W>& v) {
+    typedef LaneF<W> Unaligned __attribute__((aligned(4), may_alias));
+    *reinterpret_cast<Unaligned*>(to) = v;
+}
+
+/// All lanes the same. `x − 0` is x for every x, −0 included.
+template <int W>
+HUESTEP_INLINE LaneF<W> splat(float x) {
+    return x - LaneF<W>{};
+}
+
+HUESTEP_INLINE float selectLanes(bool mask, float yes, float no) {
+    return mask ? yes : no;
+}
+
+template <class Mask, class F>
+HUESTEP_INLINE F selectLanes(const Mask& mask, const F& yes, const F& no) {
+    return mask ? yes : no;
+}
+
+template <class F>
+HUESTEP_INLINE F maxLanes(const F& a, const F& b) {
+    return selectLanes(a > b, a, b);
+}
+template <class F>
+HUESTEP_INLINE F minLanes(const F& a, const F& b) {
+    return selectLanes(a < b, a, b);
+}
+
+}  // namespace huestep

@@ -1,0 +1,187 @@
+#include "core/parallel/executor.h"
+
+#include <atomic>
+#include <cassert>
+#include <numeric>
+#include <thread>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace huestep {
+
+namespace {
+
+// A barrier costs about 100 ns among running threads and several µs through the kernel. So a
+// worker looks a while before it sleeps, unless there are more workers than cores: then whoever
+// looks keeps the one he waits for from running.
+constexpr int looksBeforeSleep = 4000;
+
+void pauseBriefly() {
+#if defined(__x86_64__)
+    _mm_pause();
+#endif
+}
+
+std::uint64_t mix(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+}  // namespace
+
+/// The shared state of a team. A use is announced by raising `use`; a worker that has finished
+/// raises `finished`. Barriers count arrivals and raise `phase`.
+struct Executor::Team {
+    explicit Team(int threads, std::uint64_t seed, Clock clockToUse)
+        : count(threads),
+          looks(static_cast<unsigned>(threads) <= std::thread::hardware_concurrency()
+                    ? looksBeforeSleep
+                    : 0),
+          shuffleSeed(seed),
+          clock(clockToUse),
+          waits(static_cast<std::size_t>(threads)) {}
+
+    /// Waits until `value` is no longer `old`.
+    void waitWhile(std::atomic<std::uint32_t>& value, std::uint32_t old) const {
+        for (int i = 0; i < looks; ++i) {
+            if (value.load(std::memory_order_acquire) != old) return;
+            pauseBriefly();
+        }
+        while (value.load(std::memory_order_acquire) == old) {
+            value.wait(old, std::memory_order_acquire);
+        }
+    }
+
+    void arrive(int worker) {
+        const std::uint64_t from = clock ? clock() : 0;
+        const std::uint32_t now = phase.load(std::memory_order_acquire);
+        if (arrived.fetch_add(1, std::memory_order_acq_rel) + 1 ==
+            static_cast<std::uint32_t>(count)) {
+            arrived.store(0, std::memory_order_relaxed);
+            phase.store(now + 1, std::memory_order_release);
+            phase.notify_all();
+        } else {
+            waitWhile(phase, now);
+        }
+        if (clock) waits[static_cast<std::size_t>(worker)].nanoseconds += clock() - from;
+    }
+
+    void serve(int worker) {
+        std::uint32_t seen = 0;
+        for (;;) {
+            waitWhile(use, seen);
+            seen = use.load(std::memory_order_acquire);
+            if (stop.load(std::memory_order_acquire)) return;
+            (*job)(worker);
+            if (finished.fetch_add(1, std::memory_order_acq_rel) + 2 ==
+                static_cast<std::uint32_t>(count)) {
+                finished.notify_one();
+            }
+        }
+    }
+
+    void runOnAll(const std::function<void(int)>& f) {
+        job = &f;
+        finished.store(0, std::memory_order_relaxed);
+        use.fetch_add(1, std::memory_order_acq_rel);
+        use.notify_all();
+        f(0);
+        const std::uint64_t from = clock ? clock() : 0;
+        const auto others = static_cast<std::uint32_t>(count - 1);
+        for (;;) {
+            const std::uint32_t done = finished.load(std::memory_order_acquire);
+            if (done == others) break;
+            waitWhile(finished, done);
+        }
+        if (clock) waits[0].nanoseconds += clock() - from;
+    }
+
+    // A line of its own for each, so that looking at one does not slow another down.
+    struct alignas(64) Wait {
+        std::uint64_t nanoseconds = 0;
+    };
+    const int count;
+    const int looks;
+    const std::uint64_t shuffleSeed;
+    const Clock clock;
+    std::uint64_t uses = 0;
+    const std::function<void(int)>* job = nullptr;
+    std::vector<Wait> waits;
+    alignas(64) std::atomic<std::uint32_t> use{0};
+    alignas(64) std::atomic<std::uint32_t> finished{0};
+    alignas(64) std::atomic<std::uint32_t> arrived{0};
+    alignas(64) std::atomic<std::uint32_t> phase{0};
+    std::atomic<bool> stop{false};
+    std::vector<std::thread> crew;
+};
+
+Executor::Executor(int threads, std::uint64_t shuffleSeed, Clock clock)
+    : m_threads(threads), m_team(std::make_unique<Team>(threads, shuffleSeed, clock)) {
+    assert(threads >= 1 && threads <= maxThreads);
+    for (int worker = 1; worker < threads; ++worker) {
+        m_team->crew.emplace_back([team = m_team.get(), worker] { team->serve(worker); });
+    }
+}
+
+Executor::~Executor() {
+    m_team->stop.store(true, std::memory_order_release);
+    m_team->use.fetch_add(1, std::memory_order_acq_rel);
+    m_team->use.notify_all();
+    for (std::thread& thread : m_team->crew) thread.join();
+}
+
+void Executor::forBlocks(std::uint32_t count, std::uint32_t grain,
+                         const std::function<void(std::uint32_t, std::uint32_t)>& f) {
+    assert(grain > 0);
+    const std::uint32_t blocks = (count + grain - 1) / grain;
+    if (blocks == 0) return;
+    if (blocks == 1 || m_threads == 1) {
+        f(0, count);
+        return;
+    }
+    // Blocks are claimed by a counter: who is free takes the next. With a seed, the n-th claim is
+    // the n-th of a shuffled order instead; nothing downstream may be able to tell.
+    std::vector<std::uint32_t> order;
+    if (m_team->shuffleSeed != 0) {
+        order.resize(blocks);
+        std::iota(order.begin(), order.end(), 0u);
+        const std::uint64_t draw = mix(m_team->shuffleSeed + ++m_team->uses);
+        for (std::uint32_t i = blocks - 1; i > 0; --i) {
+            std::swap(order[i], order[mix(draw + i) % (i + 1)]);
+        }
+    }
+    std::atomic<std::uint32_t> claimed{0};
+    m_team->runOnAll([&](int) {
+        for (;;) {
+            const std::uint32_t claim = claimed.fetch_add(1, std::memory_order_relaxed);
+            if (claim >= blocks) return;
+            const std::uint32_t block = order.empty() ? claim : order[claim];
+            const std::uint32_t begin = block * grain;
+            f(begin, count - begin < grain ? count : begin + grain);
+        }
+    });
+}
+
+void Executor::onAllWorkers(const std::function<void(int)>& f) {
+    if (m_threads == 1) {
+        f(0);
+    } else {
+        m_team->runOnAll(f);
+    }
+}
+
+void Executor::barrier(int worker) {
+    if (m_threads > 1) m_team->arrive(worker);
+}
+
+std::vector<std::uint64_t> Executor::waited() const {
+    std::vector<std::uint64_t> nanoseconds;
+    for (const Team::Wait& wait : m_team->waits) nanoseconds.push_back(wait.nanoseconds);
+    return nanoseconds;
+}
+
+}  // namespace huestep

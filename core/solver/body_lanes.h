@@ -1,0 +1,183 @@
+/// Gather and scatter of solver bodies into lanes.
+#pragma once
+
+#include "core/math/lanes.h"
+#include "core/solver/contact_block.h"
+
+namespace huestep {
+
+template <int W>
+struct VelocityLanes {
+    LaneF<W> vx, vy, w;
+};
+
+template <int W>
+struct DeltaLanes {
+    LaneF<W> dx, dy, dc, ds;
+};
+
+using F4 = LaneF<4>;
+using F8 = LaneF<8>;
+using F16 = LaneF<16>;
+
+/// Rows to columns: four floats of each of four places.
+HUESTEP_INLINE void transpose4(const float* r0, const float* r1, const float* r2, const float* r3,
+                               F4& c0, F4& c1, F4& c2, F4& c3) {
+    const F4 a = loadLanes<4>(r0), b = loadLanes<4>(r1), c = loadLanes<4>(r2), d = loadLanes<4>(r3);
+    const F4 ab0 = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+    const F4 ab1 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const F4 cd0 = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const F4 cd1 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    c0 = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
+    c1 = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
+    c2 = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+    c3 = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
+}
+
+HUESTEP_INLINE F8 join(const F4& low, const F4& high) {
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+HUESTEP_INLINE F16 join(const F8& low, const F8& high) {
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+/// Four floats at `offset` of each lane's body, as columns.
+HUESTEP_INLINE void gather(const SolverBody* bodies, const BodyPlace* place, int offset, F4& c0,
+                           F4& c1, F4& c2, F4& c3) {
+    const auto row = [&](int lane) __attribute__((always_inline)) {
+        return &bodies[readPlace(place[lane])].vx + offset;
+    };
+    transpose4(row(0), row(1), row(2), row(3), c0, c1, c2, c3);
+}
+
+/// Eight lanes: each 128-bit half is four bodies; halves are joined before transposing, so the
+/// transpose costs no more instructions than that of four.
+HUESTEP_INLINE void gather(const SolverBody* bodies, const BodyPlace* place, int offset, F8& c0,
+                           F8& c1, F8& c2, F8& c3) {
+    const auto pair = [&](int lane) __attribute__((always_inline)) {
+        return join(loadLanes<4>(&bodies[readPlace(place[lane])].vx + offset),
+                    loadLanes<4>(&bodies[readPlace(place[lane + 4])].vx + offset));
+    };
+    const F8 a = pair(0), b = pair(1), c = pair(2), d = pair(3);
+    const F8 ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const F8 ab1 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const F8 cd0 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const F8 cd1 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    c0 = __builtin_shufflevector(ab0, cd0, 0, 1, 8, 9, 4, 5, 12, 13);
+    c1 = __builtin_shufflevector(ab0, cd0, 2, 3, 10, 11, 6, 7, 14, 15);
+    c2 = __builtin_shufflevector(ab1, cd1, 0, 1, 8, 9, 4, 5, 12, 13);
+    c3 = __builtin_shufflevector(ab1, cd1, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+HUESTEP_INLINE void gather(const SolverBody* bodies, const BodyPlace* place, int offset, F16& c0,
+                           F16& c1, F16& c2, F16& c3) {
+    F8 l0, l1, l2, l3, h0, h1, h2, h3;
+    gather(bodies, place, offset, l0, l1, l2, l3);
+    gather(bodies, place + 8, offset, h0, h1, h2, h3);
+    c0 = join(l0, h0);
+    c1 = join(l1, h1);
+    c2 = join(l2, h2);
+    c3 = join(l3, h3);
+}
+
+template <int W>
+HUESTEP_INLINE VelocityLanes<W> gatherVelocities(const SolverBody* bodies, const BodyPlace* place) {
+    VelocityLanes<W> v;
+    if constexpr (W == 1) {
+        const SolverBody& body = bodies[readPlace(place[0])];
+        v = {body.vx, body.vy, body.w};
+    } else {
+        LaneF<W> unused;
+        gather(bodies, place, 0, v.vx, v.vy, v.w, unused);
+    }
+    return v;
+}
+
+template <int W>
+HUESTEP_INLINE DeltaLanes<W> gatherDeltas(const SolverBody* bodies, const BodyPlace* place) {
+    DeltaLanes<W> d;
+    if constexpr (W == 1) {
+        const SolverBody& body = bodies[readPlace(place[0])];
+        d = {body.dx, body.dy, body.dc, body.ds};
+    } else {
+        gather(bodies, place, 4, d.dx, d.dy, d.dc, d.ds);
+    }
+    return d;
+}
+
+/// Where a lane's velocity goes: its body, or `trash` for a body that is never written.
+HUESTEP_INLINE float* velocityOf(SolverBody* bodies, SolverBody& trash, BodyPlace place) {
+    return place < 0 ? &trash.vx : &bodies[place].vx;
+}
+
+HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
+                            const F4& vx, const F4& vy, const F4& w) {
+    const F4 zero{};
+    const F4 xy0 = __builtin_shufflevector(vx, vy, 0, 4, 1, 5);
+    const F4 xy1 = __builtin_shufflevector(vx, vy, 2, 6, 3, 7);
+    const F4 wz0 = __builtin_shufflevector(w, zero, 0, 4, 1, 5);
+    const F4 wz1 = __builtin_shufflevector(w, zero, 2, 6, 3, 7);
+    storeLanes<4>(velocityOf(bodies, trash, place[0]),
+                  __builtin_shufflevector(xy0, wz0, 0, 1, 4, 5));
+    storeLanes<4>(velocityOf(bodies, trash, place[1]),
+                  __builtin_shufflevector(xy0, wz0, 2, 3, 6, 7));
+    storeLanes<4>(velocityOf(bodies, trash, place[2]),
+                  __builtin_shufflevector(xy1, wz1, 0, 1, 4, 5));
+    storeLanes<4>(velocityOf(bodies, trash, place[3]),
+                  __builtin_shufflevector(xy1, wz1, 2, 3, 6, 7));
+}
+
+HUESTEP_INLINE F4 lowHalf(const F8& v) {
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+HUESTEP_INLINE F4 highHalf(const F8& v) {
+    return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+
+HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
+                            const F8& vx, const F8& vy, const F8& w) {
+    const F8 zero{};
+    const F8 xy0 = __builtin_shufflevector(vx, vy, 0, 8, 1, 9, 4, 12, 5, 13);
+    const F8 xy1 = __builtin_shufflevector(vx, vy, 2, 10, 3, 11, 6, 14, 7, 15);
+    const F8 wz0 = __builtin_shufflevector(w, zero, 0, 8, 1, 9, 4, 12, 5, 13);
+    const F8 wz1 = __builtin_shufflevector(w, zero, 2, 10, 3, 11, 6, 14, 7, 15);
+    const F8 r0 = __builtin_shufflevector(xy0, wz0, 0, 1, 8, 9, 4, 5, 12, 13);
+    const F8 r1 = __builtin_shufflevector(xy0, wz0, 2, 3, 10, 11, 6, 7, 14, 15);
+    const F8 r2 = __builtin_shufflevector(xy1, wz1, 0, 1, 8, 9, 4, 5, 12, 13);
+    const F8 r3 = __builtin_shufflevector(xy1, wz1, 2, 3, 10, 11, 6, 7, 14, 15);
+    storeLanes<4>(velocityOf(bodies, trash, place[0]), lowHalf(r0));
+    storeLanes<4>(velocityOf(bodies, trash, place[1]), lowHalf(r1));
+    storeLanes<4>(velocityOf(bodies, trash, place[2]), lowHalf(r2));
+    storeLanes<4>(velocityOf(bodies, trash, place[3]), lowHalf(r3));
+    storeLanes<4>(velocityOf(bodies, trash, place[4]), highHalf(r0));
+    storeLanes<4>(velocityOf(bodies, trash, place[5]), highHalf(r1));
+    storeLanes<4>(velocityOf(bodies, trash, place[6]), highHalf(r2));
+    storeLanes<4>(velocityOf(bodies, trash, place[7]), highHalf(r3));
+}
+
+HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
+                            const F16& vx, const F16& vy, const F16& w) {
+    const auto low = [](const F16& v) __attribute__((always_inline)) {
+        return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    const auto high = [](const F16& v) __attribute__((always_inline)) {
+        return __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
+    };
+    scatter(bodies, trash, place, low(vx), low(vy), low(w));
+    scatter(bodies, trash, place + 8, high(vx), high(vy), high(w));
+}
+
+template <int W>
+HUESTEP_INLINE void scatterVelocities(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
+                                      const VelocityLanes<W>& v) {
+    if constexpr (W == 1) {
+        float* to = velocityOf(bodies, trash, place[0]);
+        to[0] = v.vx;
+        to[1] = v.vy;
+        to[2] = v.w;
+    } else {
+        scatter(bodies, trash, place, v.vx, v.vy, v.w);
+    }
+}
+
+}  // namespace huestep

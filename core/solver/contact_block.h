@@ -1,0 +1,98 @@
+/// Contact rows as the solver streams them: structure of arrays in blocks of 16 lanes.
+///
+/// One field of one block is one cache line, so kernels of 1, 4, 8 and 16 lanes read the same
+/// memory, and a field that a pass does not touch costs that pass nothing.
+#pragma once
+
+#include <cstdint>
+
+namespace huestep {
+
+/// What a solver pass reads and writes of a body: 32 bytes, one gather.
+///
+/// Positions are deltas from the step's start, so that precision does not fade far from the origin.
+struct alignas(32) SolverBody {
+    float vx = 0, vy = 0, w = 0;  ///< m/s, rad/s
+    float unused = 0;
+    float dx = 0, dy = 0;  ///< m, moved since the start of the step
+    float dc = 1, ds = 0;  ///< turned since the start of the step
+};
+
+/// The place of a body in the solver's array: a static or kinematic one is `~place` (negative):
+/// it is read and never written. Place 0 is the fixed world: zero velocity, no motion.
+using BodyPlace = std::int32_t;
+inline constexpr BodyPlace fixedWorld = ~BodyPlace{0};
+constexpr BodyPlace readPlace(BodyPlace p) {
+    return p < 0 ? ~p : p;
+}
+
+inline constexpr int blockLanes = 16;
+
+struct alignas(64) ContactPointRows {
+    using Row = float[blockLanes];
+    Row anchorAx, anchorAy;  ///< m, from A's centre, world axes, fixed over the step
+    Row anchorBx, anchorBy;
+    Row separation;  ///< m, at the start, less n·(rB − rA)
+    Row normalMass;  ///< kg, of the row; 0 where there is no point
+    Row tangentMass;
+    Row normalImpulse;  ///< N·s, accumulated in the current substep's cycle
+    Row tangentImpulse;
+    Row maxNormalImpulse;  ///< over the step: whether the point ever pushed
+    Row approach;          ///< m/s, relative normal velocity at the start of the step
+};
+
+struct alignas(64) ContactBlock {
+    using Row = float[blockLanes];
+    BodyPlace bodyA[blockLanes];
+    BodyPlace bodyB[blockLanes];
+    Row inverseMassA, inverseInertiaA;
+    Row inverseMassB, inverseInertiaB;
+    Row normalX, normalY;
+    Row friction;
+    ContactPointRows points[2];
+    Row restitution;
+    Row tangentSpeed;
+    Row rollingResistance;  ///< m: coefficient times radius
+    Row rollingMass;
+    Row rollingImpulse;
+};
+
+/// Soft constraint coefficients of a damped oscillator (frequency f, damping ratio ζ) at step h:
+/// ω = 2πf, a₁ = 2ζ + hω, a₂ = hω a₁, a₃ = 1/(1 + a₂); bias rate ω/a₁, mass scale a₂a₃, impulse
+/// scale a₃ (physics page, section on soft rows; Catto, "Soft Constraints", GDC 2011).
+struct Softness {
+    float biasRate = 0;  ///< 1/s
+    float massScale = 1;
+    float impulseScale = 0;
+};
+Softness softness(float hertz, float dampingRatio, float h);
+
+/// What the rows of a colour use; unused parts are skipped whole.
+struct ContactFeatures {
+    bool friction = false;
+    bool rolling = false;
+    bool tangentSpeed = false;
+    bool restitution = false;
+};
+
+/// Constants of a pass.
+struct ContactPass {
+    Softness soft;
+    float inverseH = 0;   ///< 1/s
+    float pushSpeed = 0;  ///< m/s, most that overlap is pushed apart with
+    ContactFeatures features;
+};
+
+/// A pass over `count` contacts from the start of `blocks`. Contacts of one call share no body
+/// that is written. Thread rule: calls on disjoint blocks of one colour may run side by side.
+using ContactKernel = void (*)(SolverBody* bodies, ContactBlock* blocks, std::uint32_t count,
+                               const ContactPass& pass);
+
+struct ContactKernels {
+    ContactKernel warmStart = nullptr;
+    ContactKernel solve = nullptr;  ///< normals with bias
+    ContactKernel relax = nullptr;  ///< normals without bias, then friction and rolling
+    ContactKernel restitute = nullptr;
+};
+
+}  // namespace huestep

@@ -1,0 +1,280 @@
+// The passes of the soft step over contact rows (physics page, "Starting point"; the soft row is
+// derived in contact_block.h). One template, compiled once for each width.
+
+#include "core/solver/contact_kernels.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/solver/body_lanes.h"
+
+namespace huestep {
+
+namespace {
+
+/// The two bodies of W contacts, in registers between gather and scatter.
+template <int W>
+struct Pair {
+    VelocityLanes<W> a, b;
+    LaneF<W> inverseMassA, inverseInertiaA, inverseMassB, inverseInertiaB;
+    LaneF<W> nx, ny;
+
+    HUESTEP_INLINE Pair(const SolverBody* bodies, const ContactBlock& block, int lane)
+        : a(gatherVelocities<W>(bodies, block.bodyA + lane)),
+          b(gatherVelocities<W>(bodies, block.bodyB + lane)),
+          inverseMassA(loadLanes<W>(block.inverseMassA + lane)),
+          inverseInertiaA(loadLanes<W>(block.inverseInertiaA + lane)),
+          inverseMassB(loadLanes<W>(block.inverseMassB + lane)),
+          inverseInertiaB(loadLanes<W>(block.inverseInertiaB + lane)),
+          nx(loadLanes<W>(block.normalX + lane)),
+          ny(loadLanes<W>(block.normalY + lane)) {}
+
+    HUESTEP_INLINE void store(SolverBody* bodies, const ContactBlock& block, int lane) const {
+        SolverBody trash;
+        scatterVelocities<W>(bodies, trash, block.bodyA + lane, a);
+        scatterVelocities<W>(bodies, trash, block.bodyB + lane, b);
+    }
+};
+
+/// Where a point's two anchors are, from the centres of A and B.
+template <int W>
+struct Anchors {
+    LaneF<W> ax, ay, bx, by;
+    HUESTEP_INLINE Anchors(const ContactPointRows& p, int lane)
+        : ax(loadLanes<W>(p.anchorAx + lane)),
+          ay(loadLanes<W>(p.anchorAy + lane)),
+          bx(loadLanes<W>(p.anchorBx + lane)),
+          by(loadLanes<W>(p.anchorBy + lane)) {}
+};
+
+/// Relative velocity of the anchors, B less A.
+template <int W>
+HUESTEP_INLINE void relativeVelocity(const Pair<W>& pair, const Anchors<W>& r, LaneF<W>& x,
+                                     LaneF<W>& y) {
+    x = (pair.b.vx - pair.b.w * r.by) - (pair.a.vx - pair.a.w * r.ay);
+    y = (pair.b.vy + pair.b.w * r.bx) - (pair.a.vy + pair.a.w * r.ax);
+}
+
+/// The impulse (px, py) on B at its anchor, and its opposite on A.
+template <int W>
+HUESTEP_INLINE void applyImpulse(Pair<W>& pair, const Anchors<W>& r, const LaneF<W>& px,
+                                 const LaneF<W>& py) {
+    pair.a.vx = pair.a.vx - pair.inverseMassA * px;
+    pair.a.vy = pair.a.vy - pair.inverseMassA * py;
+    pair.a.w = pair.a.w - pair.inverseInertiaA * (r.ax * py - r.ay * px);
+    pair.b.vx = pair.b.vx + pair.inverseMassB * px;
+    pair.b.vy = pair.b.vy + pair.inverseMassB * py;
+    pair.b.w = pair.b.w + pair.inverseInertiaB * (r.bx * py - r.by * px);
+}
+
+template <int W>
+HUESTEP_INLINE void warmStartLanes(SolverBody* bodies, ContactBlock& block, int lane,
+                                   const ContactPass& pass) {
+    Pair<W> pair(bodies, block, lane);
+    for (const ContactPointRows& p : block.points) {
+        const Anchors<W> r(p, lane);
+        const LaneF<W> normal = loadLanes<W>(p.normalImpulse + lane);
+        const LaneF<W> tangent = loadLanes<W>(p.tangentImpulse + lane);
+        // The tangent is the normal turned right: (ny, −nx).
+        applyImpulse<W>(pair, r, normal * pair.nx + tangent * pair.ny,
+                        normal * pair.ny - tangent * pair.nx);
+    }
+    if (pass.features.rolling) {
+        const LaneF<W> rolling = loadLanes<W>(block.rollingImpulse + lane);
+        pair.a.w = pair.a.w - pair.inverseInertiaA * rolling;
+        pair.b.w = pair.b.w + pair.inverseInertiaB * rolling;
+    }
+    pair.store(bodies, block, lane);
+}
+
+/// Current separation: at the start, plus how the anchors moved along the normal since.
+template <int W>
+HUESTEP_INLINE LaneF<W> separationNow(const Pair<W>& pair, const Anchors<W>& r,
+                                      const DeltaLanes<W>& a, const DeltaLanes<W>& b,
+                                      const LaneF<W>& start) {
+    const LaneF<W> x = (b.dx - a.dx) + ((b.dc * r.bx - b.ds * r.by) - (a.dc * r.ax - a.ds * r.ay));
+    const LaneF<W> y = (b.dy - a.dy) + ((b.ds * r.bx + b.dc * r.by) - (a.ds * r.ax + a.dc * r.ay));
+    return (x * pair.nx + y * pair.ny) + start;
+}
+
+/// The normal rows of both points. A point still apart may close its gap within the substep and
+/// no faster (bias s/h); one that overlaps is pushed out softly, or not at all in relax.
+template <int W, bool Bias>
+HUESTEP_INLINE void solveNormals(Pair<W>& pair, const DeltaLanes<W>& a, const DeltaLanes<W>& b,
+                                 ContactBlock& block, int lane, const ContactPass& pass) {
+    const LaneF<W> zero = splat<W>(0.0f);
+    const LaneF<W> one = splat<W>(1.0f);
+    for (ContactPointRows& p : block.points) {
+        const Anchors<W> r(p, lane);
+        const LaneF<W> s = separationNow<W>(pair, r, a, b, loadLanes<W>(p.separation + lane));
+        const auto apart = s > zero;
+        LaneF<W> x, y;
+        relativeVelocity<W>(pair, r, x, y);
+        const LaneF<W> vn = x * pair.nx + y * pair.ny;
+        const LaneF<W> mass = loadLanes<W>(p.normalMass + lane);
+        const LaneF<W> old = loadLanes<W>(p.normalImpulse + lane);
+        LaneF<W> impulse;
+        if constexpr (Bias) {
+            const LaneF<W> push =
+                maxLanes(s * splat<W>(pass.soft.biasRate), splat<W>(-pass.pushSpeed));
+            const LaneF<W> bias = selectLanes(apart, s * splat<W>(pass.inverseH), push);
+            const LaneF<W> massScale = selectLanes(apart, one, splat<W>(pass.soft.massScale));
+            const LaneF<W> keep = selectLanes(apart, zero, splat<W>(pass.soft.impulseScale));
+            impulse = zero - (mass * (massScale * (vn + bias)) + keep * old);
+        } else {
+            const LaneF<W> bias = selectLanes(apart, s * splat<W>(pass.inverseH), zero);
+            impulse = zero - mass * (vn + bias);
+        }
+        const LaneF<W> sum = maxLanes(old + impulse, zero);
+        impulse = sum - old;
+        storeLanes<W>(p.normalImpulse + lane, sum);
+        storeLanes<W>(p.maxNormalImpulse + lane,
+                      maxLanes(loadLanes<W>(p.maxNormalImpulse + lane), sum));
+        applyImpulse<W>(pair, r, impulse * pair.nx, impulse * pair.ny);
+    }
+}
+
+/// Coulomb's cone, a row a point, with the normal impulse just found.
+template <int W>
+HUESTEP_INLINE void solveFriction(Pair<W>& pair, ContactBlock& block, int lane,
+                                  const ContactPass& pass) {
+    const LaneF<W> friction = loadLanes<W>(block.friction + lane);
+    const LaneF<W> zero = splat<W>(0.0f);
+    LaneF<W> surface = zero;
+    if (pass.features.tangentSpeed) surface = loadLanes<W>(block.tangentSpeed + lane);
+    for (ContactPointRows& p : block.points) {
+        const Anchors<W> r(p, lane);
+        LaneF<W> x, y;
+        relativeVelocity<W>(pair, r, x, y);
+        const LaneF<W> vt = (x * pair.ny - y * pair.nx) + surface;
+        const LaneF<W> old = loadLanes<W>(p.tangentImpulse + lane);
+        const LaneF<W> most = friction * loadLanes<W>(p.normalImpulse + lane);
+        const LaneF<W> free = old - loadLanes<W>(p.tangentMass + lane) * vt;
+        const LaneF<W> sum = maxLanes(zero - most, minLanes(free, most));
+        const LaneF<W> impulse = sum - old;
+        storeLanes<W>(p.tangentImpulse + lane, sum);
+        applyImpulse<W>(pair, r, impulse * pair.ny, zero - impulse * pair.nx);
+    }
+}
+
+template <int W>
+HUESTEP_INLINE void solveRolling(Pair<W>& pair, ContactBlock& block, int lane) {
+    const LaneF<W> zero = splat<W>(0.0f);
+    const LaneF<W> load = loadLanes<W>(block.points[0].normalImpulse + lane) +
+                          loadLanes<W>(block.points[1].normalImpulse + lane);
+    const LaneF<W> most = loadLanes<W>(block.rollingResistance + lane) * load;
+    const LaneF<W> old = loadLanes<W>(block.rollingImpulse + lane);
+    const LaneF<W> free = old - loadLanes<W>(block.rollingMass + lane) * (pair.b.w - pair.a.w);
+    const LaneF<W> sum = maxLanes(zero - most, minLanes(free, most));
+    storeLanes<W>(block.rollingImpulse + lane, sum);
+    pair.a.w = pair.a.w - pair.inverseInertiaA * (sum - old);
+    pair.b.w = pair.b.w + pair.inverseInertiaB * (sum - old);
+}
+
+template <int W>
+HUESTEP_INLINE void solveLanes(SolverBody* bodies, ContactBlock& block, int lane,
+                               const ContactPass& pass) {
+    Pair<W> pair(bodies, block, lane);
+    const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
+    const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
+    solveNormals<W, true>(pair, a, b, block, lane, pass);
+    pair.store(bodies, block, lane);
+}
+
+template <int W>
+HUESTEP_INLINE void relaxLanes(SolverBody* bodies, ContactBlock& block, int lane,
+                               const ContactPass& pass) {
+    Pair<W> pair(bodies, block, lane);
+    const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
+    const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
+    solveNormals<W, false>(pair, a, b, block, lane, pass);
+    if (pass.features.friction) solveFriction<W>(pair, block, lane, pass);
+    if (pass.features.rolling) solveRolling<W>(pair, block, lane);
+    pair.store(bodies, block, lane);
+}
+
+/// Newton's law once at the end of the step, where the approach was above 1 m/s and the point
+/// pushed at all: bodies that meet speculatively bounce with the speed they came with.
+template <int W>
+HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int lane,
+                                   const ContactPass&) {
+    constexpr float threshold = 1.0f;  // m/s
+    Pair<W> pair(bodies, block, lane);
+    const LaneF<W> zero = splat<W>(0.0f);
+    const LaneF<W> e = loadLanes<W>(block.restitution + lane);
+    for (ContactPointRows& p : block.points) {
+        const Anchors<W> r(p, lane);
+        const LaneF<W> approach = loadLanes<W>(p.approach + lane);
+        const LaneF<W> pushed = loadLanes<W>(p.maxNormalImpulse + lane);
+        LaneF<W> x, y;
+        relativeVelocity<W>(pair, r, x, y);
+        const LaneF<W> vn = x * pair.nx + y * pair.ny;
+        LaneF<W> mass = loadLanes<W>(p.normalMass + lane);
+        mass = selectLanes(approach < splat<W>(-threshold), mass, zero);
+        mass = selectLanes(pushed > zero, mass, zero);
+        mass = selectLanes(e > zero, mass, zero);
+        const LaneF<W> old = loadLanes<W>(p.normalImpulse + lane);
+        const LaneF<W> sum = maxLanes(old - mass * (vn + e * approach), zero);
+        // Where the law does not apply the impulse stays as it is, to the bit.
+        const LaneF<W> next = selectLanes(mass > zero, sum, old);
+        storeLanes<W>(p.normalImpulse + lane, next);
+        const LaneF<W> impulse = next - old;
+        applyImpulse<W>(pair, r, impulse * pair.nx, impulse * pair.ny);
+    }
+    pair.store(bodies, block, lane);
+}
+
+// An entry a pass and width. Unused lanes of the last W are padding: no mass, no body. `flatten`
+// and `target` make the always-inlined code above wide.
+#define HUESTEP_PASS(name, W, attributes)                                                  \
+    attributes void name##W(SolverBody* bodies, ContactBlock* blocks, std::uint32_t count, \
+                            const ContactPass& pass) {                                     \
+        for (std::uint32_t first = 0; first < count; first += W) {                         \
+            name##Lanes<W>(bodies, blocks[first / blockLanes],                             \
+                           static_cast<int>(first % blockLanes), pass);                    \
+        }                                                                                  \
+    }
+#define HUESTEP_WIDTH(W, attributes)       \
+    HUESTEP_PASS(warmStart, W, attributes) \
+    HUESTEP_PASS(solve, W, attributes)     \
+    HUESTEP_PASS(relax, W, attributes)     \
+    HUESTEP_PASS(restitute, W, attributes) \
+    constexpr ContactKernels kernels##W{warmStart##W, solve##W, relax##W, restitute##W};
+
+HUESTEP_WIDTH(1, )
+HUESTEP_WIDTH(4, )
+#if defined(__x86_64__)
+HUESTEP_WIDTH(8, __attribute__((target("avx2"), flatten, noinline)))
+HUESTEP_WIDTH(16, __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"), flatten, noinline)))
+#endif
+
+}  // namespace
+
+Softness softness(float hertz, float dampingRatio, float h) {
+    if (!(hertz > 0.0f)) return {0.0f, 1.0f, 0.0f};
+    const float omega = 6.28318530718f * hertz;
+    const float a1 = 2.0f * dampingRatio + h * omega;
+    const float a2 = h * omega * a1;
+    const float a3 = 1.0f / (1.0f + a2);
+    return {omega / a1, a2 * a3, a3};
+}
+
+const ContactKernels& contactKernels(Simd simd) {
+    switch (simd) {
+        case Simd::Scalar:
+            return kernels1;
+        case Simd::Sse2:
+        case Simd::Neon:
+            return kernels4;
+#if defined(__x86_64__)
+        case Simd::Avx2:
+            return kernels8;
+        case Simd::Avx512:
+            return kernels16;
+#endif
+        default:
+            return contactKernels(availableSimd().back());
+    }
+}
+
+}  // namespace huestep

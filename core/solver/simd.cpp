@@ -1,0 +1,52 @@
+#include <array>
+#include <string_view>
+
+#include "core/world/world.h"
+
+namespace huestep {
+
+namespace {
+
+struct Named {
+    Simd simd;
+    std::string_view name;
+};
+constexpr std::array<Named, 6> names{{{Simd::Auto, "auto"},
+                                      {Simd::Scalar, "scalar"},
+                                      {Simd::Sse2, "sse2"},
+                                      {Simd::Avx2, "avx2"},
+                                      {Simd::Avx512, "avx512"},
+                                      {Simd::Neon, "neon"}}};
+
+}  // namespace
+
+std::vector<Simd> availableSimd() {
+    std::vector<Simd> found{Simd::Scalar};
+#if defined(__x86_64__)
+    found.push_back(Simd::Sse2);
+    if (__builtin_cpu_supports("avx2")) found.push_back(Simd::Avx2);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
+        found.push_back(Simd::Avx512);
+    }
+#elif defined(__ARM_NEON)
+    found.push_back(Simd::Neon);
+#endif
+    return found;
+}
+
+std::string_view nameOf(Simd simd) {
+    for (const Named& n : names) {
+        if (n.simd == simd) return n.name;
+    }
+    return "unknown";
+}
+
+std::optional<Simd> simdFromName(std::string_view name) {
+    for (const Named& n : names) {
+        if (n.name == name) return n.simd;
+    }
+    return std::nullopt;
+}
+
+}  // namespace huestep

@@ -1,0 +1,91 @@
+/// The soft step: substeps of warm start, biased solve, motion and relaxation over the plan.
+///
+/// Source: the physics page, "Starting point"; the scheme is the one known as Soft Step (Catto,
+/// "Solver2D", 2024): h = Δt/n; a substep integrates velocities, applies the last impulses, solves
+/// normals and joints with a soft bias, moves, and solves again without bias ("relax"), where
+/// friction and rolling resistance are solved too. Restitution comes once, at the end.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/contact/contact.h"
+#include "core/graph/plan.h"
+#include "core/joint/joint_row.h"
+#include "core/parallel/executor.h"
+#include "core/solver/contact_block.h"
+#include "core/world/event.h"
+
+namespace huestep {
+
+/// An external force of one tick.
+struct BodyForce {
+    Vec2 force;           ///< N
+    float torque = 0.0f;  ///< N·m
+};
+
+/// Places of a joint's bodies in the world's arrays. A mouse joint has body B in both.
+struct ConstraintPlaces {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+};
+
+/// What the solver reads and writes of the world.
+struct SolverWorld {
+    std::span<const BodyInfo> bodies;
+    std::span<BodyMotion> motions;
+    std::span<const BodyForce> forces;         ///< by body; empty: none
+    std::span<const std::uint32_t> kinematic;  ///< places of kinematic bodies
+    std::span<const JointInfo> joints;
+    std::span<const ConstraintPlaces> jointBodies;  ///< places of each joint's two bodies
+    std::span<JointImpulses> jointImpulses;
+    std::span<Contact> contacts;
+    Vec2 gravity;
+    float stepSeconds = 0;
+    std::uint32_t substeps = 4;
+};
+
+/// The rows of a step, kept between steps for their memory alone.
+class SoftStep {
+ public:
+    /// Rows from contacts, joints and motions. Parallel over blocks.
+    void prepare(const Plan& plan, const SolverWorld& world, Executor* executor);
+
+    /// All substeps. Batches side by side; a giant batch on all threads.
+    void solve(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
+               Executor* executor);
+
+    /// Impulses back into contacts and joints; `hits` gets contacts that met hard, by key.
+    void store(const Plan& plan, const SolverWorld& world, Executor* executor,
+               std::vector<ContactHit>& hits);
+
+    /// Poses and velocities back into motions, free flight included; `broken` gets the places of
+    /// bodies that turned non-finite or left the world, which stay where they were, at rest.
+    void finish(const Plan& plan, const SolverWorld& world, Executor* executor,
+                std::vector<std::uint32_t>& broken);
+
+ private:
+    /// What drives a solver body besides constraints.
+    struct Drive {
+        Vec2 acceleration;                          // m/s²
+        float angular = 0;                          // rad/s²
+        float linearFactor = 1, angularFactor = 1;  // of damping, a substep
+    };
+    struct Pass;
+
+    void prepareBody(const Plan& plan, const SolverWorld& world, std::uint32_t place);
+    void prepareJoints(const Plan& plan, const SolverWorld& world, std::uint32_t begin,
+                       std::uint32_t end);
+    void prepareBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block,
+                      ContactFeatures& features);
+    void solveBatch(const Plan& plan, const Batch& batch, const Pass& pass, int worker, int workers,
+                    Executor* executor);
+
+    std::vector<SolverBody> m_bodies;  // by solver place
+    std::vector<Drive> m_drives;
+    std::vector<ContactBlock> m_blocks;
+    std::vector<JointRow> m_joints;  // in solver order
+    ContactFeatures m_features;
+};
+
+}  // namespace huestep

@@ -1,0 +1,49 @@
+/// The state of a world between two steps: everything its future depends on, and nothing else.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "core/state/records.h"
+
+namespace huestep {
+
+/// Arrays of records, each sorted by id. `motions[i]` belongs to `bodies[i]`, `jointImpulses[i]` to
+/// `joints[i]`. Contacts are sorted by (shapeA, shapeB).
+struct WorldState {
+    std::vector<WorldInfo> world = std::vector<WorldInfo>(1);  ///< exactly one
+    std::vector<PlayerRecord> players;                         ///< the host first
+    std::vector<BodyMotion> motions;
+    std::vector<BodyInfo> bodies;
+    std::vector<ShapeInfo> shapes;
+    std::vector<JointImpulses> jointImpulses;
+    std::vector<JointInfo> joints;
+    std::vector<ContactState> contacts;
+    std::vector<SpawnPoint> spawnPoints;
+    std::vector<BodyInfo> playerBody;      ///< what players get: none or one, id 0
+    std::vector<BodyMotion> playerMotion;  ///< likewise
+    std::vector<ShapeInfo> playerShapes;   ///< its shapes, id and body 0
+
+    [[nodiscard]] WorldInfo& info() { return world.front(); }
+    [[nodiscard]] const WorldInfo& info() const { return world.front(); }
+};
+
+/// Calls `visit(name, array)` for every array, in the order of snapshots and of differences.
+/// The one list: whoever hashes, saves, loads or compares goes through here.
+template <class State, class Visit>
+void forEachArray(State& s, Visit&& visit) {
+    visit(std::string_view("world"), s.world);
+    visit(std::string_view("player"), s.players);
+    visit(std::string_view("motion"), s.motions);
+    visit(std::string_view("body"), s.bodies);
+    visit(std::string_view("shape"), s.shapes);
+    visit(std::string_view("jointImpulse"), s.jointImpulses);
+    visit(std::string_view("joint"), s.joints);
+    visit(std::string_view("contact"), s.contacts);
+    visit(std::string_view("spawnPoint"), s.spawnPoints);
+    visit(std::string_view("playerBody"), s.playerBody);
+    visit(std::string_view("playerMotion"), s.playerMotion);
+    visit(std::string_view("playerShape"), s.playerShapes);
+}
+
+}  // namespace huestep

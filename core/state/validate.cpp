@@ -1,0 +1,225 @@
+// What a state must satisfy to be stepped. A snapshot comes from outside: its checksums say that
+// it arrived whole, not that it makes sense.
+
+#include <bit>
+#include <cstring>
+
+#include "core/collision/hull.h"
+#include "core/math/finite.h"
+#include "core/state/snapshot.h"
+
+namespace huestep {
+
+namespace {
+
+std::string nth(std::string_view record, std::size_t i) {
+    return std::string(record) + " " + std::to_string(i);
+}
+
+/// Every float of every record is finite and no −0.
+template <class Record>
+std::string badNumber(std::string_view name, const std::vector<Record>& array) {
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        const auto* base = reinterpret_cast<const char*>(&array[i]);
+        for (const Field& field : fieldsOf<Record>) {
+            if (field.type != FieldType::F32) continue;
+            for (std::uint32_t k = 0; k < field.count; ++k) {
+                float value;
+                std::memcpy(&value, base + field.offset + 4 * k, 4);
+                const bool minusZero = std::bit_cast<std::uint32_t>(value) == 0x80000000u;
+                if (isFinite(value) && !minusZero) continue;
+                return nth(name, i) + " " + field.name + ": " +
+                       (minusZero ? "a zero with a sign" : "not a finite number");
+            }
+        }
+    }
+    return {};
+}
+
+template <class Record>
+std::string badOrder(std::string_view name, const std::vector<Record>& array, std::uint32_t next) {
+    std::uint32_t last = 0;
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        if (array[i].id <= last) return nth(name, i) + " id: ids must rise";
+        if (array[i].id >= next) return nth(name, i) + " id: at or above the counter";
+        last = array[i].id;
+    }
+    return {};
+}
+
+template <class Record>
+const Record* findById(const std::vector<Record>& array, std::uint32_t id) {
+    std::size_t low = 0;
+    std::size_t high = array.size();
+    while (low < high) {
+        const std::size_t middle = (low + high) / 2;
+        if (array[middle].id < id) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low < array.size() && array[low].id == id ? &array[low] : nullptr;
+}
+
+bool unit(Rotation q) {
+    const float l = q.c * q.c + q.s * q.s;
+    return l > 0.999f && l < 1.001f;
+}
+
+bool within(float v, float low, float high) {
+    return v >= low && v <= high;
+}
+
+std::string badInfo(const WorldInfo& w) {
+    if (!(w.stepSeconds > 0.0f) || !(w.stepSeconds <= 0.1f))
+        return "world stepSeconds: out of range";
+    if (w.substeps < 1 || w.substeps > 64) return "world substeps: out of range";
+    if (w.nextBody == 0 || w.nextShape == 0 || w.nextJoint == 0) return "world counters: zero";
+    if (w.reserved != 0) return "world reserved: not zero";
+    return {};
+}
+
+std::string badMotion(const BodyMotion& m) {
+    if (!unit(m.rotation)) return "rotation: not a unit vector";
+    if (!within(m.position.x, -maxCoordinate, maxCoordinate)) return "position.x: out of range";
+    if (!within(m.position.y, -maxCoordinate, maxCoordinate)) return "position.y: out of range";
+    return {};
+}
+
+std::string badBody(const BodyInfo& b) {
+    if ((b.flags & BodyInfo::typeMask) > 2) return "flags: no such body type";
+    if (b.flags > 15) return "flags: unknown bits";
+    if (b.dynamic() != (b.inverseMass > 0.0f)) return "inverseMass: does not fit the type";
+    if (b.mass < 0 || b.inertia < 0 || b.inverseInertia < 0) return "mass: negative";
+    if (!b.dynamic() && b.inverseInertia != 0) return "inverseInertia: does not fit the type";
+    if (!within(b.linearDamping, 0, 1000)) return "linearDamping: out of range";
+    if (!within(b.angularDamping, 0, 1000)) return "angularDamping: out of range";
+    if (!within(b.gravityScale, -1000, 1000)) return "gravityScale: out of range";
+    return {};
+}
+
+std::string badShape(const ShapeInfo& s) {
+    const int n = s.vertexCount();
+    bool countFits = false;
+    switch (s.kind & 0xffu) {
+        case 0:
+            countFits = n == 1;
+            break;
+        case 1:
+        case 3:
+            countFits = n == 2;
+            break;
+        case 2:
+            countFits = n >= 3 && n <= maxPolygonVertices;
+            break;
+        default:
+            return "kind: no such shape";
+    }
+    if (!countFits || s.kind > 0xffff) return "kind: wrong number of vertices";
+    if (!within(s.radius, 0, 10'000)) return "radius: out of range";
+    if (!within(s.friction, 0, 100)) return "friction: out of range";
+    if (!within(s.restitution, 0, 1)) return "restitution: out of range";
+    if (!within(s.rollingResistance, 0, 100)) return "rollingResistance: out of range";
+    const auto hull = hullOf<float>(s);
+    for (int i = 0; n > 1 && i < n; ++i) {
+        const auto here = static_cast<std::size_t>(i);
+        const auto next = static_cast<std::size_t>(hull.next(i));
+        if (hull.normals[here] == Vec2{}) return "vertices: two coincide";
+        if (n > 2 && cross(hull.normals[here], hull.normals[next]) <= 0.0f) {
+            return "vertices: not convex";
+        }
+    }
+    return {};
+}
+
+std::string badReferences(const WorldState& s) {
+    BodyId last = 0;
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+        if (s.shapes[i].body < last) return nth("shape", i) + " body: shapes follow their bodies";
+        last = s.shapes[i].body;
+        if (!findById(s.bodies, last)) return nth("shape", i) + " body: no such body";
+    }
+    for (std::size_t i = 0; i < s.joints.size(); ++i) {
+        const JointInfo& j = s.joints[i];
+        if ((j.flags & 0xffu) > 2 || j.flags > 0x1fff) return nth("joint", i) + " flags: unknown";
+        if (j.bodyA == j.bodyB) return nth("joint", i) + " bodyB: the same as bodyA";
+        // A grab draws its body to a point of the world: it has no body A.
+        const bool mouse = j.kind() == JointKind::Mouse;
+        if (mouse ? j.bodyA != 0 : !findById(s.bodies, j.bodyA)) {
+            return nth("joint", i) + " bodyA: no such body";
+        }
+        if (!findById(s.bodies, j.bodyB)) return nth("joint", i) + " bodyB: no such body";
+        if (!unit(j.reference)) return nth("joint", i) + " reference: not a unit vector";
+    }
+    ShapeId lastA = 0, lastB = 0;
+    for (std::size_t i = 0; i < s.contacts.size(); ++i) {
+        const ContactState& c = s.contacts[i];
+        if (c.shapeA < lastA || (c.shapeA == lastA && c.shapeB <= lastB)) {
+            return nth("contact", i) + " shapeA: contacts must be in key order";
+        }
+        lastA = c.shapeA;
+        lastB = c.shapeB;
+        const ShapeInfo* a = findById(s.shapes, c.shapeA);
+        const ShapeInfo* b = findById(s.shapes, c.shapeB);
+        if (c.shapeA >= c.shapeB || !a || !b) return nth("contact", i) + " shapeB: no such pair";
+        if (a->body == b->body) return nth("contact", i) + " shapeB: of the same body";
+        if (!unit(c.relative.q)) return nth("contact", i) + " relative: not a unit vector";
+    }
+    return {};
+}
+
+std::string badPlayers(const WorldState& s) {
+    if (s.players.empty() || s.players.front().id != 0) return "player 0: the host is missing";
+    for (std::size_t i = 1; i < s.players.size(); ++i) {
+        const PlayerRecord& p = s.players[i];
+        if (p.id <= s.players[i - 1].id) return nth("player", i) + " id: ids must rise";
+        if (p.body != 0 && !findById(s.bodies, p.body)) return nth("player", i) + " body: none";
+        if (p.grab != 0 && !findById(s.joints, p.grab)) return nth("player", i) + " grab: none";
+    }
+    return {};
+}
+
+template <class Record, class Check>
+std::string firstBad(std::string_view name, const std::vector<Record>& array, Check check) {
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        if (std::string bad = check(array[i]); !bad.empty()) return nth(name, i) + " " + bad;
+    }
+    return {};
+}
+
+std::string badState(const WorldState& s) {
+    if (s.world.size() != 1) return "world: not exactly one record";
+    if (s.motions.size() != s.bodies.size()) return "motion: not one a body";
+    if (s.jointImpulses.size() != s.joints.size()) return "jointImpulse: not one a joint";
+    if (s.playerBody.size() > 1) return "playerBody: more than one";
+    if (s.playerMotion.size() != s.playerBody.size()) return "playerMotion: not one a playerBody";
+    std::string bad;
+    forEachArray(s, [&](std::string_view name, const auto& array) {
+        if (bad.empty()) bad = badNumber(name, array);
+    });
+    const WorldInfo& info = s.info();
+    if (bad.empty()) bad = badInfo(info);
+    if (bad.empty()) bad = badOrder("body", s.bodies, info.nextBody);
+    if (bad.empty()) bad = badOrder("shape", s.shapes, info.nextShape);
+    if (bad.empty()) bad = badOrder("joint", s.joints, info.nextJoint);
+    if (bad.empty()) bad = firstBad("motion", s.motions, badMotion);
+    if (bad.empty()) bad = firstBad("body", s.bodies, badBody);
+    if (bad.empty()) bad = firstBad("shape", s.shapes, badShape);
+    if (bad.empty()) bad = firstBad("playerBody", s.playerBody, badBody);
+    if (bad.empty()) bad = firstBad("playerMotion", s.playerMotion, badMotion);
+    if (bad.empty()) bad = firstBad("playerShape", s.playerShapes, badShape);
+    if (bad.empty()) bad = badReferences(s);
+    if (bad.empty()) bad = badPlayers(s);
+    return bad;
+}
+
+}  // namespace
+
+Status validate(const WorldState& state) {
+    std::string bad = badState(state);
+    if (!bad.empty()) return Error{std::move(bad)};
+    return Done{};
+}
+
+}  // namespace huestep

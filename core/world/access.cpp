@@ -1,0 +1,170 @@
+// Looking into a world, and the small changes every stage shares.
+
+#include <algorithm>
+
+#include "core/state/snapshot.h"
+#include "core/world/world_data.h"
+
+namespace huestep {
+
+namespace {
+
+template <class Record>
+std::optional<std::uint32_t> findById(const std::vector<Record>& array, std::uint32_t id) {
+    const auto at = std::lower_bound(array.begin(), array.end(), id,
+                                     [](const Record& r, std::uint32_t k) { return r.id < k; });
+    if (at == array.end() || at->id != id) return std::nullopt;
+    return static_cast<std::uint32_t>(at - array.begin());
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> World::Data::findBody(BodyId id) const {
+    const auto at = findById(state.bodies, id);
+    if (at && !removed.empty() && *at < removed.size() && removed[*at]) return std::nullopt;
+    return at;
+}
+
+std::optional<std::uint32_t> World::Data::findJoint(JointId id) const {
+    const auto at = findById(state.joints, id);
+    if (at && *at < removedJoints.size() && removedJoints[*at]) return std::nullopt;
+    return at;
+}
+
+PlayerRecord* World::Data::findPlayer(PlayerId id) {
+    const auto at = findById(state.players, id);
+    return at ? &state.players[*at] : nullptr;
+}
+
+void World::Data::wake(std::uint32_t body) {
+    if (state.bodies[body].dynamic()) state.motions[body].rest = 0;
+}
+
+/// Copies the touching contacts, in key order, to where snapshots and hashes look for them.
+void World::Data::contactsToState() const {
+    if (contactsInState) return;
+    state.contacts.clear();
+    for (const Contact& contact : accelerators.contacts) {
+        if (contact.pointCount > 0) state.contacts.push_back(contact.state);
+    }
+    contactsInState = true;
+}
+
+World::World(std::unique_ptr<Data> data) : m_data(std::move(data)) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+// A copy carries the state alone: accelerators are made again.
+World::World(const World& other) : m_data(std::make_unique<Data>()) {
+    other.m_data->contactsToState();
+    m_data->state = other.m_data->state;
+    m_data->events = other.m_data->events;
+    m_data->report = other.m_data->report;
+}
+
+World& World::operator=(const World& other) {
+    if (this != &other) *this = World(other);
+    return *this;
+}
+
+Result<World> World::create(const Scene& scene) {
+    if (const Status fine = check(scene); !fine) return fine.error();
+    auto data = std::make_unique<Data>();
+    data->build(scene);
+    return World(std::move(data));
+}
+
+Result<World> World::restore(std::span<const std::byte> snapshot) {
+    Result<WorldState> state = readSnapshot(snapshot);
+    if (!state) return state.error();
+    auto data = std::make_unique<Data>();
+    data->state = std::move(*state);
+    return World(std::move(data));
+}
+
+std::vector<std::byte> World::save() const {
+    m_data->contactsToState();
+    return writeSnapshot(m_data->state);
+}
+
+const Events& World::step(std::span<const Command> commands, const StepResources& with) {
+    m_data->step(commands, with);
+    return m_data->events;
+}
+
+std::uint64_t World::tick() const {
+    return m_data->state.info().tick;
+}
+std::uint64_t World::motionRoot() const {
+    return huestep::motionRoot(m_data->state);
+}
+std::vector<std::uint64_t> World::motionLeaves() const {
+    return huestep::motionLeaves(m_data->state);
+}
+
+std::uint64_t World::fullRoot() const {
+    m_data->contactsToState();
+    return huestep::fullRoot(m_data->state, m_data->roots);
+}
+
+const WorldInfo& World::info() const {
+    return m_data->state.info();
+}
+std::span<const BodyInfo> World::bodies() const {
+    return m_data->state.bodies;
+}
+std::span<const BodyMotion> World::motions() const {
+    return m_data->state.motions;
+}
+std::span<const ShapeInfo> World::shapes() const {
+    return m_data->state.shapes;
+}
+std::span<const JointInfo> World::joints() const {
+    return m_data->state.joints;
+}
+std::span<const JointImpulses> World::jointImpulses() const {
+    return m_data->state.jointImpulses;
+}
+std::span<const PlayerRecord> World::players() const {
+    return m_data->state.players;
+}
+const Events& World::events() const {
+    return m_data->events;
+}
+const StepReport& World::report() const {
+    return m_data->report;
+}
+
+std::vector<ContactState> World::contacts() const {
+    m_data->contactsToState();
+    return m_data->state.contacts;
+}
+
+std::optional<std::uint32_t> World::find(BodyId id) const {
+    return m_data->findBody(id);
+}
+
+std::span<const ShapeInfo> World::shapesOf(BodyId id) const {
+    const std::vector<ShapeInfo>& shapes = m_data->state.shapes;
+    const auto from = std::lower_bound(shapes.begin(), shapes.end(), id,
+                                       [](const ShapeInfo& s, BodyId k) { return s.body < k; });
+    const auto to = std::upper_bound(from, shapes.end(), id,
+                                     [](BodyId k, const ShapeInfo& s) { return k < s.body; });
+    return {from, to};
+}
+
+void World::dropAccelerators() {
+    m_data->contactsToState();
+    m_data->accelerators = {};
+    m_data->roots = {};
+}
+
+void World::corruptForTest(BodyId body, std::uint32_t fieldIndex, std::uint32_t bit) {
+    const auto place = m_data->findBody(body);
+    if (!place || fieldIndex >= fieldsOf<BodyMotion>.size() || bit >= 32) return;
+    auto* bytes = reinterpret_cast<std::byte*>(&m_data->state.motions[*place]);
+    bytes[fieldsOf<BodyMotion>[fieldIndex].offset + bit / 8] ^= std::byte{1} << (bit % 8);
+}
+
+}  // namespace huestep

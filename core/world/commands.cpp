@@ -1,0 +1,391 @@
+// Applying commands: checked against state and rights, then applied, or rejected with a reason.
+// Both are functions of (state, commands) alone.
+
+#include <algorithm>
+
+#include "core/math/finite.h"
+#include "core/world/world_data.h"
+
+namespace huestep {
+
+namespace {
+
+constexpr std::size_t maxPlayerSpawn = 8;  // bodies a command
+constexpr float grabHertz = 5.0f;          // soft enough not to shake what is held
+constexpr float grabDamping = 0.7f;
+
+bool inWorld(Vec2 p) {
+    const auto in = [](float v) { return v >= -maxCoordinate && v <= maxCoordinate; };
+    return isFinite(p) && in(p.x) && in(p.y);
+}
+
+}  // namespace
+
+namespace {
+
+/// One tick's commands against one world. Each `apply` either does all of its command or nothing.
+class Applier {
+ public:
+    Applier(World::Data& world) : m_world(world), m_state(world.state) {}
+
+    CommandOutcome apply(const Command& command) {
+        CommandOutcome outcome{command.author, command.sequence, Rejection::None, 0};
+        PlayerRecord* author = m_world.findPlayer(command.author);
+        if (author == nullptr) {
+            outcome.reason = Rejection::UnknownAuthor;
+            return outcome;
+        }
+        if (command.sequence <= author->lastSequence) {
+            outcome.reason = Rejection::OldSequence;
+            return outcome;
+        }
+        author->lastSequence = command.sequence;
+        m_author = command.author;
+        m_firstBody = 0;
+        outcome.reason =
+            std::visit([this](const auto& action) { return apply(action); }, command.action);
+        outcome.firstBody = m_firstBody;
+        return outcome;
+    }
+
+ private:
+    [[nodiscard]] bool host() const { return m_author == 0; }
+    PlayerRecord& author() { return *m_world.findPlayer(m_author); }
+
+    /// A dynamic body to be pushed, or why not.
+    Rejection findPushed(BodyId id, std::uint32_t& place) const {
+        const auto found = m_world.findBody(id);
+        if (!found) return Rejection::UnknownBody;
+        place = *found;
+        return m_state.bodies[place].dynamic() ? Rejection::None : Rejection::WrongBodyType;
+    }
+
+    [[nodiscard]] bool tooStrong(Vec2 v, float most) const {
+        return !host() && !(length(v) <= most);
+    }
+
+    Rejection apply(const AddPlayer& action) {
+        if (!host() || action.player == 0) return Rejection::NotAllowed;
+        const WorldInfo& info = m_state.info();
+        if ((info.flags & WorldInfo::players) == 0) return Rejection::NotAllowed;
+        if (m_world.findPlayer(action.player)) return Rejection::PlayerExists;
+        if (m_state.players.size() > info.maxPlayers) return Rejection::OverLimit;
+        const bool body = !m_state.playerBody.empty();
+        if (body && !roomFor(1, m_state.playerShapes.size(), 0)) return Rejection::OverLimit;
+        PlayerRecord record{};
+        record.id = action.player;
+        record.joined = m_state.info().joinedPlayers++;
+        if (body) record.body = m_firstBody = spawnPlayerBody(record);
+        const auto at =
+            std::lower_bound(m_state.players.begin(), m_state.players.end(), record.id,
+                             [](const PlayerRecord& p, PlayerId id) { return p.id < id; });
+        m_state.players.insert(at, record);
+        return Rejection::None;
+    }
+
+    BodyId spawnPlayerBody(const PlayerRecord& player) {
+        m_world.contactsToState();
+        WorldInfo& info = m_state.info();
+        BodyInfo body = m_state.playerBody.front();
+        BodyMotion motion = m_state.playerMotion.front();
+        body.id = info.nextBody++;
+        body.owner = player.id;
+        if (!m_state.spawnPoints.empty()) {
+            const Vec2 point =
+                m_state.spawnPoints[player.joined % m_state.spawnPoints.size()].position;
+            motion.position = point + rotate(motion.rotation, body.localCenter);
+            motion.position = {canonicalZero(motion.position.x), canonicalZero(motion.position.y)};
+        }
+        m_state.bodies.push_back(body);
+        m_state.motions.push_back(motion);
+        for (ShapeInfo shape : m_state.playerShapes) {
+            shape.id = info.nextShape++;
+            shape.body = body.id;
+            m_state.shapes.push_back(shape);
+        }
+        m_world.accelerators.definitionsStale = true;
+        m_world.roots.definitionsKnown = false;
+        return body.id;
+    }
+
+    Rejection apply(const RemovePlayer& action) {
+        if (!host() || action.player == 0) return Rejection::NotAllowed;
+        const PlayerRecord* player = m_world.findPlayer(action.player);
+        if (player == nullptr) return Rejection::UnknownAuthor;
+        if (player->grab != 0) markJoint(player->grab);
+        for (std::uint32_t i = 0; i < m_state.bodies.size(); ++i) {
+            if (m_state.bodies[i].owner == action.player) markBody(i);
+        }
+        std::erase_if(m_state.players,
+                      [&](const PlayerRecord& p) { return p.id == action.player; });
+        return Rejection::None;
+    }
+
+    Rejection apply(const ApplyImpulse& action) {
+        std::uint32_t place = 0;
+        if (!isFinite(action.impulse) || !inWorld(action.point)) return Rejection::NotFinite;
+        if (const Rejection r = findPushed(action.body, place); r != Rejection::None) return r;
+        if (tooStrong(action.impulse, m_state.info().maxImpulse)) return Rejection::TooStrong;
+        const BodyInfo& info = m_state.bodies[place];
+        BodyMotion& motion = m_state.motions[place];
+        const Vec2 velocity = motion.velocity + info.inverseMass * action.impulse;
+        const float spin =
+            motion.angularVelocity +
+            info.inverseInertia * cross(action.point - motion.position, action.impulse);
+        if (!isFinite(velocity) || !isFinite(spin)) return Rejection::TooStrong;
+        motion.velocity = {canonicalZero(velocity.x), canonicalZero(velocity.y)};
+        motion.angularVelocity = canonicalZero(spin);
+        m_world.wake(place);
+        return Rejection::None;
+    }
+
+    Rejection apply(const ApplyForce& action) {
+        std::uint32_t place = 0;
+        if (!isFinite(action.force) || !inWorld(action.point)) return Rejection::NotFinite;
+        if (const Rejection r = findPushed(action.body, place); r != Rejection::None) return r;
+        if (tooStrong(action.force, m_state.info().maxForce)) return Rejection::TooStrong;
+        m_world.forces.resize(m_state.bodies.size());
+        BodyForce& sum = m_world.forces[place];
+        sum.force += action.force;
+        sum.torque += cross(action.point - m_state.motions[place].position, action.force);
+        m_world.wake(place);
+        return Rejection::None;
+    }
+
+    Rejection apply(const Grab& action) {
+        std::uint32_t place = 0;
+        if (!inWorld(action.point) || !inWorld(action.target)) return Rejection::NotFinite;
+        if (const Rejection r = findPushed(action.body, place); r != Rejection::None) return r;
+        if (author().grab != 0) {
+            const auto held = m_world.findJoint(author().grab);
+            if (held && m_state.joints[*held].bodyB == action.body) {
+                return apply(MoveGrab{action.target});
+            }
+        }
+        if (m_state.joints.size() >= m_state.info().maxJoints) return Rejection::OverLimit;
+        if (author().grab != 0) markJoint(author().grab);
+        m_world.contactsToState();
+        const BodyMotion& motion = m_state.motions[place];
+        const Vec2 anchor = unrotate(motion.rotation, action.point - motion.position);
+        JointInfo j{};
+        j.id = m_state.info().nextJoint++;
+        j.flags = static_cast<std::uint32_t>(JointKind::Mouse) | JointInfo::spring;
+        j.bodyB = action.body;
+        j.owner = m_author;
+        j.anchorB = {canonicalZero(anchor.x), canonicalZero(anchor.y)};
+        j.target = {canonicalZero(action.target.x), canonicalZero(action.target.y)};
+        // What lifts the body and as much again, within the scene's cap.
+        const float most = m_state.bodies[place].mass * 1000.0f;
+        j.maxForce = host() ? most : minOf(most, m_state.info().maxForce);
+        j.springHertz = grabHertz;
+        j.springDamping = grabDamping;
+        m_state.joints.push_back(j);
+        m_state.jointImpulses.push_back({});
+        author().grab = j.id;
+        m_world.accelerators.definitionsStale = true;
+        m_world.roots.definitionsKnown = false;
+        m_world.wake(place);
+        return Rejection::None;
+    }
+
+    Rejection apply(const MoveGrab& action) {
+        if (!inWorld(action.target)) return Rejection::NotFinite;
+        const auto held = m_world.findJoint(author().grab);
+        if (author().grab == 0 || !held) return Rejection::NothingGrabbed;
+        JointInfo& joint = m_state.joints[*held];
+        joint.target = {canonicalZero(action.target.x), canonicalZero(action.target.y)};
+        m_world.roots.definitionsKnown = false;
+        if (const auto body = m_world.findBody(joint.bodyB)) m_world.wake(*body);
+        return Rejection::None;
+    }
+
+    Rejection apply(const Release&) {
+        if (author().grab == 0) return Rejection::NothingGrabbed;
+        markJoint(author().grab);
+        author().grab = 0;
+        return Rejection::None;
+    }
+
+    [[nodiscard]] bool roomFor(std::size_t bodies, std::size_t shapes, std::size_t joints) const {
+        const WorldInfo& info = m_state.info();
+        constexpr std::uint32_t lastId = 0xfffffff0u;  // ids never wrap
+        return m_state.bodies.size() + bodies <= info.maxBodies &&
+               m_state.shapes.size() + shapes <= info.maxShapes &&
+               m_state.joints.size() + joints <= info.maxJoints &&
+               info.nextBody + bodies < lastId && info.nextShape + shapes < lastId &&
+               info.nextJoint + joints < lastId;
+    }
+
+    Rejection apply(const Spawn& action) {
+        if (action.bodies.empty()) return Rejection::BadDefinition;
+        std::size_t shapes = 0;
+        for (const BodyDef& body : action.bodies) {
+            if (body.id != 0 || body.firstShape != 0) return Rejection::BadDefinition;
+            if (!check(body, "body")) return Rejection::BadDefinition;
+            if (!host() && body.type != BodyType::Dynamic) return Rejection::NotAllowed;
+            shapes += body.shapes.size();
+        }
+        for (const JointDef& joint : action.joints) {
+            if (joint.id != 0 || !check(joint, action.bodies.size(), "joint")) {
+                return Rejection::BadDefinition;
+            }
+        }
+        if (!host()) {
+            if (action.bodies.size() > maxPlayerSpawn || !action.joints.empty()) {
+                return Rejection::NotAllowed;
+            }
+            if (spawnedBy(m_author) + action.bodies.size() > m_state.info().maxSpawned) {
+                return Rejection::OverBudget;
+            }
+        }
+        if (!roomFor(action.bodies.size(), shapes, action.joints.size())) {
+            return Rejection::OverLimit;
+        }
+        m_firstBody = m_world.add(action.bodies, action.joints, m_author);
+        return Rejection::None;
+    }
+
+    /// Bodies the player spawned and that are still there; the one the scene gave it apart.
+    [[nodiscard]] std::size_t spawnedBy(PlayerId player) {
+        const BodyId own = m_world.findPlayer(player)->body;
+        std::size_t count = 0;
+        for (std::uint32_t i = 0; i < m_state.bodies.size(); ++i) {
+            const BodyInfo& body = m_state.bodies[i];
+            if (body.owner == player && body.id != own && !marked(i)) ++count;
+        }
+        return count;
+    }
+
+    Rejection apply(const RemoveBody& action) {
+        const auto place = m_world.findBody(action.body);
+        if (!place) return Rejection::UnknownBody;
+        const BodyInfo& body = m_state.bodies[*place];
+        if (!host() && (body.owner != m_author || body.id == author().body)) {
+            return Rejection::NotAllowed;
+        }
+        markBody(*place);
+        return Rejection::None;
+    }
+
+    Rejection apply(const RemoveJoint& action) {
+        if (!host()) return Rejection::NotAllowed;
+        if (!m_world.findJoint(action.joint)) return Rejection::UnknownJoint;
+        markJoint(action.joint);
+        return Rejection::None;
+    }
+
+    Rejection apply(const SetMotor& action) {
+        if (!isFinite(action.speed) || !(action.speed >= -maxSpeed && action.speed <= maxSpeed)) {
+            return Rejection::NotFinite;
+        }
+        const auto place = m_world.findJoint(action.joint);
+        if (!place) return Rejection::UnknownJoint;
+        JointInfo& joint = m_state.joints[*place];
+        if (!joint.has(JointInfo::hasMotor)) return Rejection::NoMotor;
+        joint.motorSpeed = canonicalZero(action.speed);
+        joint.flags =
+            action.enabled ? joint.flags | JointInfo::motor : joint.flags & ~JointInfo::motor;
+        if (!action.enabled) m_state.jointImpulses[*place].motor = 0.0f;
+        m_world.roots.definitionsKnown = false;
+        for (const BodyId id : {joint.bodyA, joint.bodyB}) {
+            if (const auto body = m_world.findBody(id)) m_world.wake(*body);
+        }
+        return Rejection::None;
+    }
+
+    Rejection apply(const SetVelocity& action) {
+        if (!host()) return Rejection::NotAllowed;
+        const auto in = [](float v) { return v >= -maxSpeed && v <= maxSpeed; };
+        if (!in(action.velocity.x) || !in(action.velocity.y) || !in(action.angularVelocity)) {
+            return Rejection::NotFinite;
+        }
+        const auto place = m_world.findBody(action.body);
+        if (!place) return Rejection::UnknownBody;
+        if (m_state.bodies[*place].type() != BodyType::Kinematic) return Rejection::WrongBodyType;
+        BodyMotion& motion = m_state.motions[*place];
+        motion.velocity = {canonicalZero(action.velocity.x), canonicalZero(action.velocity.y)};
+        motion.angularVelocity = canonicalZero(action.angularVelocity);
+        return Rejection::None;
+    }
+
+    [[nodiscard]] bool marked(std::uint32_t body) const {
+        return body < m_world.removed.size() && m_world.removed[body];
+    }
+    void markBody(std::uint32_t place) {
+        m_world.removed.resize(m_state.bodies.size(), 0);
+        m_world.removed[place] = 1;
+    }
+    void markJoint(JointId id) {
+        if (const auto place = m_world.findJoint(id)) {
+            m_world.removedJoints.resize(m_state.joints.size(), 0);
+            m_world.removedJoints[*place] = 1;
+        }
+    }
+
+    World::Data& m_world;
+    WorldState& m_state;
+    PlayerId m_author = 0;
+    BodyId m_firstBody = 0;
+};
+
+}  // namespace
+
+void World::Data::applyCommands(std::span<const Command> commands) {
+    // Frames come sorted; whoever calls with another order gets the order of the key all the same.
+    std::vector<Command> sorted(commands.begin(), commands.end());
+    sortByKey(sorted);
+    Applier applier(*this);
+    std::uint32_t fromPlayers = 0;
+    for (const Command& command : sorted) {
+        if (command.author != 0 && ++fromPlayers > state.info().maxCommandsPerTick) {
+            events.commands.push_back({command.author, command.sequence, Rejection::OverLimit, 0});
+            continue;
+        }
+        events.commands.push_back(applier.apply(command));
+    }
+    removeMarked();
+}
+
+void sortByKey(std::vector<Command>& commands) {
+    std::stable_sort(commands.begin(), commands.end(), [](const Command& a, const Command& b) {
+        return a.author != b.author ? a.author < b.author : a.sequence < b.sequence;
+    });
+}
+
+std::string_view describe(Rejection reason) {
+    switch (reason) {
+        case Rejection::None:
+            return "applied";
+        case Rejection::UnknownAuthor:
+            return "the author is no player of this world";
+        case Rejection::NotAllowed:
+            return "the author may not do this";
+        case Rejection::OldSequence:
+            return "the sequence is not above the author's last";
+        case Rejection::UnknownBody:
+            return "there is no such body";
+        case Rejection::UnknownJoint:
+            return "there is no such joint";
+        case Rejection::WrongBodyType:
+            return "the body is of the wrong type for this";
+        case Rejection::NotFinite:
+            return "a number is not finite or out of range";
+        case Rejection::TooStrong:
+            return "the impulse or force is above the scene's cap";
+        case Rejection::BadDefinition:
+            return "the definition is not valid";
+        case Rejection::OverBudget:
+            return "the author's spawn budget is used up";
+        case Rejection::OverLimit:
+            return "a limit of the world is reached";
+        case Rejection::NothingGrabbed:
+            return "the author holds nothing";
+        case Rejection::NoMotor:
+            return "the joint has no motor";
+        case Rejection::PlayerExists:
+            return "the player is already there";
+    }
+    return "unknown reason";
+}
+
+}  // namespace huestep

@@ -1,0 +1,89 @@
+// Queries: rays and shapes against the world, in key order.
+
+#include <algorithm>
+
+#include "core/collision/cast.h"
+#include "core/world/world_data.h"
+
+namespace huestep {
+
+std::vector<RayHit> World::castRay(Vec2 from, Vec2 to) const {
+    std::vector<RayHit> hits;
+    const WorldState& state = m_data->state;
+    std::uint32_t body = 0;
+    for (const ShapeInfo& shape : state.shapes) {
+        while (state.bodies[body].id != shape.body) ++body;
+        const Pose pose = state.motions[body].pose();
+        const Hull hull = hullOf<float>(shape);
+        const Bounds ray{minOf(from, to), maxOf(from, to)};
+        if (!overlaps(boundsOf(hull, pose), ray)) continue;
+        const auto hit = castRayAtHull(hull, untransform(pose, from), untransform(pose, to));
+        if (!hit) continue;
+        hits.push_back({shape.id, shape.body, hit->fraction, from + hit->fraction * (to - from),
+                        rotate(pose.q, hit->normal)});
+    }
+    std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
+        return a.fraction != b.fraction ? a.fraction < b.fraction : a.shape < b.shape;
+    });
+    return hits;
+}
+
+std::vector<ShapeId> World::overlap(const ShapeDef& shape, const Pose& pose) const {
+    std::vector<ShapeId> found;
+    const WorldState& state = m_data->state;
+    ShapeInfo probe{};
+    probe.kind = static_cast<std::uint32_t>(shape.kind) |
+                 (static_cast<std::uint32_t>(shape.vertexCount) << 8);
+    probe.radius = shape.radius;
+    probe.vertices = shape.vertices;
+    const Hull hull = hullOf<float>(probe);
+    const Bounds bounds = boundsOf(hull, pose);
+    std::uint32_t body = 0;
+    for (const ShapeInfo& other : state.shapes) {
+        while (state.bodies[body].id != other.body) ++body;
+        const Pose otherPose = state.motions[body].pose();
+        const Hull otherHull = hullOf<float>(other);
+        if (!overlaps(boundsOf(otherHull, otherPose), bounds)) continue;
+        if (collide(otherHull, hull, relative(otherPose, pose), 0.0f).count > 0) {
+            found.push_back(other.id);
+        }
+    }
+    return found;
+}
+
+std::vector<ContactView> World::contactViews() const {
+    std::vector<ContactView> views;
+    m_data->contactsToState();
+    const Data& d = *m_data;
+    const Accelerators& acc = d.accelerators;
+    std::vector<int> colours(acc.contacts.size(), -1);
+    const Plan& plan = acc.plan;
+    for (std::size_t i = plan.jointLinks; i < plan.links.size() && acc.planValid; ++i) {
+        const std::uint8_t colour = plan.colourOfLink[i];
+        const std::uint32_t contact = plan.links[i].source;
+        if (contact < colours.size()) colours[contact] = colour == overflowColour ? 255 : colour;
+    }
+    for (std::size_t i = 0; i < acc.contacts.size(); ++i) {
+        const Contact& c = acc.contacts[i];
+        if (c.pointCount == 0) continue;
+        const Pose a = d.state.motions[c.bodyA].pose();
+        const Pose b = d.state.motions[c.bodyB].pose();
+        ContactView view;
+        view.shapeA = c.state.shapeA;
+        view.shapeB = c.state.shapeB;
+        view.normal = rotate(a.q, c.normal);
+        view.pointCount = c.pointCount;
+        view.colour = colours[i];
+        for (std::size_t k = 0; k < c.pointCount; ++k) {
+            const Vec2 onA = transform(a, c.anchorA[k]);
+            const Vec2 onB = transform(b, c.anchorB[k]);
+            view.point[k] = 0.5f * (onA + onB);
+            view.separation[k] = c.separation[k] + dot(view.normal, onB - onA);
+            view.normalImpulse[k] = c.state.normalImpulse[k];
+        }
+        views.push_back(view);
+    }
+    return views;
+}
+
+}  // namespace huestep

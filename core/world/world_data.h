@@ -1,0 +1,99 @@
+/// The inside of a world: its state, what is derived from it, and the steps over both.
+///
+/// Private to core/world. Everything in `Accelerators` may be thrown away between two steps; a
+/// test does so and expects the same hashes.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/collision/broad_phase.h"
+#include "core/contact/contact.h"
+#include "core/contact/narrow_phase.h"
+#include "core/graph/plan.h"
+#include "core/solver/soft_step.h"
+#include "core/state/roots.h"
+#include "core/state/state.h"
+#include "core/world/world.h"
+
+namespace huestep {
+
+/// Derived from the definitions; made again when bodies, shapes or joints come or go.
+struct Shapes {
+    std::vector<Hull> hulls;           // by shape
+    std::vector<ShapeProxy> proxies;   // by shape
+    std::vector<std::uint32_t> first;  // by body: its first shape; one more at the end
+    std::vector<float> reach;          // by body, m: farthest point of a shape from the centre
+    std::vector<ShapePair> forbidden;  // body places that a joint keeps from touching, sorted
+    std::vector<ConstraintPlaces> jointBodies;  // by joint
+    std::vector<std::uint32_t> kinematic;       // places of kinematic bodies
+};
+
+struct Accelerators {
+    bool definitionsStale = true;  // `shapes` and all below must be made again
+    Shapes shapes;
+    std::vector<Bounds> tight;  // by shape, grown by half the speculative margin
+    std::vector<Vec2> travel;   // by shape
+    BroadPhase broadPhase;
+    std::vector<Contact> contacts;          // candidate pairs, by key; holds the contacts' state
+    bool contactsValid = false;             // else they are to be read from `state.contacts`
+    std::vector<std::uint32_t> lastActive;  // bodies that may have moved in the last step
+    Plan plan;
+    bool planValid = false;
+    SoftStep solver;
+};
+
+/// Whether a body takes part in a step.
+enum : std::uint8_t { restsNow = 0, movesNow = 1, drivesNow = 2 };  // drives: kinematic, moving
+
+struct World::Data {
+    // The step works on `accelerators.contacts`. `state.contacts` is current only while
+    // `contactsInState`: whoever reads it, or throws the accelerators away, copies it there first.
+    mutable WorldState state;
+    mutable bool contactsInState = true;
+    Accelerators accelerators;
+    Events events;
+    StepReport report;
+    mutable RootCache roots;
+
+    // Of one step.
+    std::vector<BodyForce> forces;       // by body; empty: none
+    std::vector<std::uint8_t> activity;  // by body
+    std::vector<std::uint8_t> removed;   // by body; empty: none
+    std::vector<std::uint8_t> removedJoints;
+
+    // access.cpp
+    [[nodiscard]] std::optional<std::uint32_t> findBody(BodyId id) const;
+    [[nodiscard]] std::optional<std::uint32_t> findJoint(JointId id) const;
+    [[nodiscard]] PlayerRecord* findPlayer(PlayerId id);
+    void wake(std::uint32_t body);
+    [[nodiscard]] std::span<Contact> contacts() { return accelerators.contacts; }
+    void contactsToState() const;
+
+    // definitions.cpp
+    /// Appends bodies and joints that have been checked; returns the first new body's id.
+    BodyId add(std::span<const BodyDef> bodies, std::span<const JointDef> joints, PlayerId owner);
+    void build(const Scene& scene);
+    /// Takes out what was marked, wakes what it touched, reports its contacts as ended.
+    void removeMarked();
+    void rebuildShapes();
+
+    // commands.cpp
+    void applyCommands(std::span<const Command> commands);
+
+    // step.cpp
+    void step(std::span<const Command> commands, const StepResources& with);
+    void findPairs(Executor* executor);
+    void layOutContacts();
+    void collideAll(Executor* executor);
+    void updatePlan();
+    bool wakeTouched();
+    void settleIslands();
+
+    [[nodiscard]] NarrowPhaseInput narrowPhaseInput() const {
+        return {state.motions, accelerators.shapes.hulls, accelerators.tight};
+    }
+};
+
+}  // namespace huestep
