@@ -158,7 +158,7 @@ Result<ScriptLine> readLine(Words& words, std::uint64_t earliest) {
     }
     line.action = reader->second(words, line);
     if (!words.problem().empty()) return Error{words.problem()};
-    if (words.left() != 0) return Error{"'" + words.word("") + "' is one word too many"};
+    if (words.left() != 0) return Error{words.word("a word") + " is one word too many"};
     return line;
 }
 
