@@ -210,6 +210,10 @@ bool Checker::body(const Place& place, const BodyDef& body) {
         return fail(place.at("type"), "is not static, kinematic or dynamic");
     }
     if (!within(place.at("id"), body.id, 0u, caps::maxId)) return false;
+    if (!within(place.at("firstShape"), body.firstShape, 0u, caps::maxId)) return false;
+    if (body.firstShape != 0 && body.id == 0) {
+        return fail(place.at("firstShape"), "needs an id of the body as well");
+    }
     if (!within(place.at("position"), body.position, maxCoordinate)) return false;
     if (!unit(place.at("rotation"), body.rotation)) return false;
     if (!within(place.at("velocity"), body.velocity, maxSpeed) ||

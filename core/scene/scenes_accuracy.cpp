@@ -79,10 +79,11 @@ Scene chain(Values values) {
     const BodyDef link = bodyOf(BodyType::Dynamic, {}, bar);
     std::uint32_t last = hang(scene, pivot, {}, link, {0.0f, 0.25f}, q);
     for (int i = 1; i < 10; ++i) last = hang(scene, last, {0.0f, -0.25f}, link, {0.0f, 0.25f}, q);
-    ShapeDef disc = ghost(ShapeDef::circle({}, 0.5f));
-    disc.density = static_cast<float>(ratio / (0.25 * pi));
+    const float radius = 0.6f;
+    ShapeDef disc = ghost(ShapeDef::circle({}, radius));
+    disc.density = static_cast<float>(ratio / (0.36 * pi));
     const BodyDef ball = bodyOf(BodyType::Dynamic, {}, disc);
-    hang(scene, last, {0.0f, -0.25f}, ball, {0.0f, 0.5f}, q);
+    hang(scene, last, {0.0f, -0.25f}, ball, {0.0f, radius}, q);
     return scene;
 }
 

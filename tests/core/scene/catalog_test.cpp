@@ -1,0 +1,243 @@
+#include "core/scene/catalog.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace huestep {
+namespace {
+
+Scene sceneOf(const std::string& text) {
+    Result<Scene> scene = sceneFromCatalog(text);
+    EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().message);
+    return scene.ok() ? *scene : Scene{};
+}
+
+std::size_t countOf(const Scene& scene, BodyType type) {
+    return static_cast<std::size_t>(
+        std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                      [&](const BodyDef& body) { return body.type == type; }));
+}
+
+std::string sentenceFor(const std::string& text) {
+    const Result<Scene> scene = sceneFromCatalog(text);
+    return scene.ok() ? "no error" : scene.error().message;
+}
+
+TEST(Catalog, EverySceneIsValidAtItsStandardLowestAndHighestValues) {
+    for (const CatalogEntry& entry : sceneCatalog()) {
+        std::vector<double> standard, low, high;
+        for (const SceneParameter& parameter : entry.parameters) {
+            standard.push_back(parameter.standard);
+            low.push_back(parameter.low);
+            high.push_back(parameter.high);
+        }
+        for (const auto& values : {standard, low, high}) {
+            const Status status = check(entry.build(values));
+            EXPECT_TRUE(status.ok())
+                << entry.name << ": " << (status.ok() ? "" : status.error().message);
+        }
+    }
+}
+
+TEST(Catalog, IsSortedByNameAndEveryEntrySaysWhatItIsFor) {
+    const auto catalog = sceneCatalog();
+    EXPECT_TRUE(std::is_sorted(catalog.begin(), catalog.end(),
+                               [](const auto& a, const auto& b) { return a.name < b.name; }));
+    for (const CatalogEntry& entry : catalog) {
+        EXPECT_FALSE(entry.purpose.empty()) << entry.name;
+        EXPECT_GT(entry.ticks, 0u) << entry.name;
+        for (const SceneParameter& parameter : entry.parameters) {
+            EXPECT_LE(parameter.low, parameter.standard) << entry.name;
+            EXPECT_LE(parameter.standard, parameter.high) << entry.name;
+            EXPECT_FALSE(parameter.meaning.empty()) << entry.name;
+        }
+    }
+}
+
+// The counts below are those of the table of the performance page.
+TEST(Catalog, PyramidHas5050BoxesOnAGroundAndNeverSleeps) {
+    const Scene scene = sceneOf("pyramid");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 5050u);
+    EXPECT_EQ(countOf(scene, BodyType::Static), 1u);
+    EXPECT_TRUE(scene.joints.empty());
+    EXPECT_FALSE(scene.sleep);
+    const BodyDef& last = scene.bodies.back();
+    EXPECT_EQ(last.position, (Vec2{0.0f, 99.5f})) << "the top box stands on the axis";
+    EXPECT_EQ(sceneOf("pyramid:base=100"), [&] {
+        Scene same = scene;
+        same.name = "pyramid:base=100";
+        return same;
+    }());
+}
+
+TEST(Catalog, ManyPyramidsHas22000BoxesAndASegmentARow) {
+    const Scene scene = sceneOf("many_pyramids");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 22'000u);
+    ASSERT_EQ(countOf(scene, BodyType::Static), 1u);
+    ASSERT_EQ(scene.bodies[0].shapes.size(), 20u);
+    const ShapeDef& second = scene.bodies[0].shapes[1];
+    EXPECT_EQ(second.kind, ShapeKind::Segment);
+    EXPECT_EQ(second.vertices[0], (Vec2{-110.0f, 11.0f}));
+    EXPECT_EQ(second.vertices[1], (Vec2{110.0f, 11.0f}));
+    EXPECT_FALSE(scene.sleep);
+    EXPECT_EQ(sceneOf("many_pyramids:base=3,rows=2,columns=5").bodies.size(), 2u * 5u * 6u + 1u);
+}
+
+TEST(Catalog, JointGridHas10000DiscsOfWhichSevenAreHeldAnd19800Revolutes) {
+    const Scene scene = sceneOf("joint_grid");
+    EXPECT_EQ(scene.bodies.size(), 10'000u);
+    EXPECT_EQ(countOf(scene, BodyType::Static), 7u);
+    EXPECT_EQ(scene.joints.size(), 19'800u);
+    const Filter& filter = scene.bodies[0].shapes[0].filter;
+    EXPECT_FALSE(mayTouch(filter, filter));
+    for (const JointDef& joint : scene.joints) {
+        EXPECT_EQ(scene.bodies[joint.bodyA].position + joint.anchorA,
+                  scene.bodies[joint.bodyB].position + joint.anchorB);
+    }
+}
+
+TEST(Catalog, TumblerHas2025BoxesInsideADrivenDrum) {
+    const Scene scene = sceneOf("tumbler");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 2026u);
+    EXPECT_EQ(countOf(scene, BodyType::Static), 1u);
+    ASSERT_EQ(scene.joints.size(), 1u);
+    const MotorDef& motor = scene.joints[0].motor;
+    EXPECT_TRUE(motor.enabled);
+    EXPECT_FLOAT_EQ(motor.speed, 0.43633231f);
+    EXPECT_FLOAT_EQ(motor.maxEffort, 1e8f);
+    EXPECT_EQ(scene.bodies[1].shapes.size(), 4u);
+    for (std::size_t i = 2; i < scene.bodies.size(); ++i) {
+        const Vec2 p = scene.bodies[i].position - scene.bodies[1].position;
+        EXPECT_LT(std::max(std::abs(p.x), std::abs(p.y)), 9.5f - 0.125f) << i;
+    }
+}
+
+TEST(Catalog, SmallHasThreeColumnsOf40BoxesAndADisc) {
+    const Scene scene = sceneOf("small");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 41u);
+    EXPECT_EQ(scene.bodies.back().shapes[0].kind, ShapeKind::Circle);
+    EXPECT_TRUE(scene.sleep);
+    EXPECT_FALSE(sceneOf("small:sleep=0").sleep);
+}
+
+TEST(Catalog, ChainHasTenLinksOfOneKilogramAndABallOfTheRatio) {
+    const Scene scene = sceneOf("chain:ratio=1000,angle=90");
+    ASSERT_EQ(scene.bodies.size(), 12u);
+    ASSERT_EQ(scene.joints.size(), 11u);
+    for (std::size_t i = 1; i <= 10; ++i) {
+        const ShapeDef& bar = scene.bodies[i].shapes[0];
+        const Vec2 size = bar.vertices[2] - bar.vertices[0];
+        EXPECT_NEAR(size.x * size.y * bar.density, 1.0f, 1e-6f);
+    }
+    const ShapeDef& ball = scene.bodies[11].shapes[0];
+    EXPECT_NEAR(ball.density * 3.14159265f * ball.radius * ball.radius, 1000.0f, 1e-2f);
+    EXPECT_NEAR(scene.bodies[11].position.x, 5.6f, 1e-4f) << "5 m of links and the ball's radius";
+    EXPECT_NEAR(scene.bodies[11].position.y, 0.0f, 1e-4f);
+}
+
+TEST(Catalog, SandboxGivesPlayersABodyAndRoomToAppear) {
+    const Scene scene = sceneOf("sandbox");
+    ASSERT_TRUE(scene.players.has_value());
+    ASSERT_TRUE(scene.players->body.has_value());
+    EXPECT_GE(scene.players->spawnPoints.size(), 5u);
+    for (const Vec2 point : scene.players->spawnPoints) {
+        for (const BodyDef& body : scene.bodies) {
+            if (body.type != BodyType::Dynamic) continue;
+            EXPECT_GT(length(body.position - point), 1.0f);
+        }
+        EXPECT_LT(std::abs(point.x), 19.0f);
+        EXPECT_GT(point.y, 1.0f);
+        EXPECT_LT(point.y, 23.0f);
+    }
+    EXPECT_NEAR(static_cast<double>(scene.bodies.size()), 150.0, 20.0);
+}
+
+TEST(Catalog, MixedTouchesEveryFeature) {
+    const Scene scene = sceneOf("mixed");
+    std::array<bool, 4> shapes{};
+    std::array<bool, 3> joints{}, types{};
+    bool spring = false, limit = false, motor = false, connected = false, asleep = false;
+    bool damped = false, scaled = false, fixed = false, restless = false, compound = false;
+    bool rolling = false, belt = false, grouped = false, masked = false, givenId = false;
+    for (const BodyDef& body : scene.bodies) {
+        types[static_cast<std::size_t>(body.type)] = true;
+        asleep |= body.asleep;
+        damped |= body.linearDamping > 0.0f && body.angularDamping > 0.0f;
+        scaled |= body.gravityScale != 1.0f;
+        fixed |= body.fixedRotation;
+        restless |= !body.maySleep;
+        compound |= body.type == BodyType::Dynamic && body.shapes.size() > 1;
+        givenId |= body.id != 0;
+        for (const ShapeDef& shape : body.shapes) {
+            shapes[static_cast<std::size_t>(shape.kind)] = true;
+            rolling |= shape.material.rollingResistance > 0.0f;
+            belt |= shape.material.tangentSpeed != 0.0f;
+            grouped |= shape.filter.group != 0;
+            masked |= shape.filter.mask != ~0u;
+        }
+    }
+    for (const JointDef& joint : scene.joints) {
+        joints[static_cast<std::size_t>(joint.kind)] = true;
+        spring |= joint.spring.enabled;
+        limit |= joint.limit.enabled;
+        motor |= joint.motor.enabled;
+        connected |= joint.collideConnected;
+    }
+    for (const bool has : shapes) EXPECT_TRUE(has);
+    for (const bool has : joints) EXPECT_TRUE(has);
+    for (const bool has : types) EXPECT_TRUE(has);
+    EXPECT_TRUE(spring && limit && motor && connected);
+    EXPECT_TRUE(asleep && damped && scaled && fixed && restless && compound && givenId);
+    EXPECT_TRUE(rolling && belt && grouped && masked);
+    EXPECT_TRUE(scene.players.has_value());
+}
+
+TEST(Catalog, ReadsParametersInAnyOrderAndFractionsWhereTheyMakeSense) {
+    EXPECT_EQ(sceneOf("pendulum:angle=22.5").bodies.size(), 2u);
+    const Scene a = sceneOf("hinges:rows=3,columns=2");
+    const Scene b = sceneOf("hinges:columns=2,rows=3");
+    EXPECT_EQ(a.bodies, b.bodies);
+    EXPECT_EQ(a.joints, b.joints);
+    EXPECT_EQ(a.name, "hinges:rows=3,columns=2");
+}
+
+TEST(Catalog, NamesWhatIsWrongAndWhatThereIsInstead) {
+    EXPECT_EQ(
+        sentenceFor("pyrmaid"),
+        "there is no scene 'pyrmaid'; there are ballistic, chain, double_pendulum, hinges, "
+        "joint_grid, many_pyramids, mixed, pendulum, pyramid, sandbox, small, stack, tumbler");
+    EXPECT_EQ(sentenceFor("many_pyramids:bse=1"),
+              "many_pyramids has no parameter 'bse'; it has rows, columns, base");
+    EXPECT_EQ(sentenceFor("mixed:base=1"), "mixed has no parameter 'base'; it has none");
+    EXPECT_EQ(sentenceFor("pyramid:base"), "pyramid: base needs a value, as in base=100");
+    EXPECT_EQ(sentenceFor("pyramid:base=0"),
+              "pyramid: base must be a whole number from 1 to 200, is 0");
+    EXPECT_EQ(sentenceFor("pyramid:base=2.5"),
+              "pyramid: base must be a whole number from 1 to 200, is 2.5");
+    EXPECT_EQ(sentenceFor("chain:ratio=nan"),
+              "chain: ratio must be a number from 1 to 1e+06, is nan");
+    EXPECT_EQ(sentenceFor("pyramid:base=1e999"), "pyramid: base: '1e999' is not a number");
+    EXPECT_EQ(sentenceFor("pyramid:base=12x"), "pyramid: base: '12x' is not a number");
+    EXPECT_EQ(sentenceFor("pyramid:base="), "pyramid: base: '' is not a number");
+    EXPECT_EQ(sentenceFor("pyramid:base=3,base=4"), "pyramid: base is given twice");
+    EXPECT_EQ(sentenceFor("pyramid:"), "pyramid: nothing stands after the colon; it has base");
+    EXPECT_EQ(sentenceFor("pyramid:base=3,"), "pyramid: nothing stands after the last comma");
+    EXPECT_EQ(sentenceFor(std::string(100, 'q')).substr(0, 65),
+              "there is no scene '" + std::string(40, 'q') + "...'; ");
+    EXPECT_EQ(sentenceFor("pyramid:base=" + std::string(300, '0') + "3"),
+              "a scene's name and parameters take at most 256 characters");
+}
+
+TEST(Catalog, FindsTheEntryThatATextNamesParametersAside) {
+    ASSERT_NE(findInCatalog("pyramid:base=7"), nullptr);
+    EXPECT_EQ(findInCatalog("pyramid:base=7")->name, "pyramid");
+    EXPECT_EQ(findInCatalog("pyramid:base=7")->ticks, 500u);
+    EXPECT_EQ(findInCatalog("pyramids"), nullptr);
+    EXPECT_EQ(findInCatalog(""), nullptr);
+}
+
+}  // namespace
+}  // namespace huestep
