@@ -203,10 +203,15 @@ ManifoldT<Real> clipEdges(const HullT<Real>& reference, int edge, const HullT<Re
         last < Real(0) ? keep(w1, r1, i1) : keep(w2, r2, i2);
         return m;
     }
-    const Real low = maxOf(first, Real(0));
-    const Real high = minOf(last, extent);
-    keep(first < Real(0) ? pointOn(low) : w2, r1, i2);
-    if (high - low > Real(1e-6)) keep(last > extent ? pointOn(high) : w1, r2, i1);
+    // A vertex that is past the end by less than the tolerance is not cut off: where the incident
+    // edge is steep, the point at the cut would be far less deep than the vertex.
+    const Real slack = Real(featureTolerance);
+    const bool cutLow = first < -slack;
+    const bool cutHigh = last > extent + slack;
+    const Real low = cutLow ? Real(0) : first;
+    const Real high = cutHigh ? extent : last;
+    keep(cutLow ? pointOn(low) : w2, r1, i2);
+    if (high - low > Real(1e-6)) keep(cutHigh ? pointOn(high) : w1, r2, i1);
     return m;
 }
 
@@ -228,8 +233,11 @@ ManifoldT<Real> hulls(const HullT<Real>& a, const HullT<Real>& b, Real margin) {
         bool found = false;
         nearestToEdges(a, b, false, found, nearest);
         nearestToEdges(b, a, true, found, nearest);
-        const Real beyond = maxOf(separation, Real(0)) + Real(featureTolerance);
-        if (nearest.twoVertices && nearest.squared > beyond * beyond) {
+        // Two vertices that face each other along the axis but for the tolerance stay with the
+        // face: the offset across it is what counts, whatever the distance.
+        const Real along = maxOf(separation, Real(0));
+        const Real across = Real(featureTolerance);
+        if (nearest.twoVertices && nearest.squared > along * along + across * across) {
             return betweenPoints(nearest.pointA, nearest.pointB, a.radius, b.radius,
                                  nearest.vertexA, nearest.vertexB, margin);
         }
