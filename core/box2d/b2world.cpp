@@ -260,7 +260,7 @@ void Builder::addCapsule(const ShapeDef& shape, const std::string& path, b2Body&
 void Builder::addFixture(const ShapeDef& shape, const b2Shape& b2shape, b2Body& body) {
     b2FixtureDef def;
     def.shape = &b2shape;
-    def.density = shape.kind == ShapeKind::Segment ? 0.0f : shape.density;
+    def.density = shape.density;
     def.friction = shape.material.friction;
     def.restitution = shape.material.restitution;
     def.filter.categoryBits = static_cast<uint16>(shape.filter.category);
