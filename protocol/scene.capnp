@@ -74,6 +74,7 @@ struct Body {
   angularDamping @13 :Float32;        # 1/s, [0, 1000]
   gravityScale @14 :Float32 = 1;      # within 1000 of 0
   shapes @15 :List(Shape);            # at most 256
+  firstShape @16 :UInt32;             # with an id: the first id of its shapes; 0: the next ones
 }
 
 enum JointKind {
@@ -127,7 +128,7 @@ struct Joint {
 struct Players {
   # What players get when they join a session, and what they may do there.
   body @0 :Body;                      # null: players have no body
-  spawnPoints @1 :List(Vec2);         # m; player k gets point k mod size; at most 1024
+  spawnPoints @1 :List(Vec2);         # m; player k gets point k mod size; at most 4096
   maxSpawned @2 :UInt32 = 16;         # bodies a player may have spawned at a time
   maxImpulse @3 :Float32 = 100;       # N s a command
   maxForce @4 :Float32 = 1000;        # N a command or a grab

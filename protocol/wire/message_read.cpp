@@ -12,7 +12,7 @@ namespace {
 std::string sessionName(Reading& in, ::capnp::Text::Reader name) {
     const std::string_view text(name.begin(), name.size());
     if (!isSessionName(text)) {
-        in.at("session", [&] { in.refuse("not a name of 1 to 64 of a-z, 0-9, _ and -"); });
+        in.refuse("session", "not a name of 1 to 64 of a-z, 0-9, _ and -");
     }
     return std::string(text);
 }
@@ -20,7 +20,7 @@ std::string sessionName(Reading& in, ::capnp::Text::Reader name) {
 ResumeToken resumeToken(Reading& in, ::capnp::Data::Reader data) {
     ResumeToken token{};
     if (data.size() != token.size()) {
-        in.at("resume", [&] { in.refuse(std::to_string(data.size()) + " bytes instead of 16"); });
+        in.refuse("resume", std::to_string(data.size()) + " bytes instead of 16");
     }
     std::copy(data.begin(), data.end(), token.begin());
     return token;
@@ -32,7 +32,7 @@ std::string text(Reading& in, const char* field, ::capnp::Text::Reader value, st
 
 void refuseAbove(Reading& in, const char* field, std::uint64_t value, std::uint64_t most) {
     if (value <= most) return;
-    in.at(field, [&] { in.refuse(std::to_string(value) + " is above " + std::to_string(most)); });
+    in.refuse(field, std::to_string(value) + " is above " + std::to_string(most));
 }
 
 std::vector<Command> readCommands(Reading& in, ::capnp::List<schema::Command>::Reader from,
@@ -56,7 +56,7 @@ std::vector<T> numbers(const List& list) {
 
 std::vector<Pose> readPoses(Reading& in, ::capnp::List<float>::Reader from) {
     const std::size_t size = in.sizeOf("poses", from, 4 * maxViewBodies, 4);
-    if (size % 4 != 0) in.at("poses", [&] { in.refuse("not four numbers a body"); });
+    if (size % 4 != 0) in.refuse("poses", "not four numbers a body");
     std::vector<Pose> poses(size / 4);
     for (unsigned i = 0; i < poses.size(); ++i) {
         poses[i] = in.at("poses", i, [&] {
@@ -95,10 +95,10 @@ std::vector<View::Shape> readShapes(Reading& in, schema::View::Reader from, std:
     for (unsigned i = 0; i < count; ++i) {
         shapes.push_back(in.at("shapes", i, [&] {
             const auto shape = list[i];
-            if (shape.getBody() >= bodies) in.at("body", [&] { in.refuse("no such body"); });
+            if (shape.getBody() >= bodies) in.refuse("body", "no such body");
             const std::size_t own = shape.getVertexCount();
             if (own < 1 || own > maxPolygonVertices || used + 2 * own > floats) {
-                in.at("vertexCount", [&] { in.refuse(std::to_string(own) + " do not fit"); });
+                in.refuse("vertexCount", std::to_string(own) + " do not fit");
             }
             View::Shape read{shape.getBody(),
                              in.choice("kind", shape.getKind(), ShapeKind::Segment),
@@ -112,7 +112,7 @@ std::vector<View::Shape> readShapes(Reading& in, schema::View::Reader from, std:
             return read;
         }));
     }
-    if (used != floats) in.at("vertices", [&] { in.refuse("more than the shapes have"); });
+    if (used != floats) in.refuse("vertices", "more than the shapes have");
     return shapes;
 }
 
@@ -141,14 +141,14 @@ Welcome read(Reading& in, schema::Welcome::Reader from) {
     message.tick = from.getTick();
     message.ticksPerSecond = in.real("ticksPerSecond", from.getTicksPerSecond());
     if (!(message.ticksPerSecond > 0.0f && message.ticksPerSecond <= maxTicksPerSecond)) {
-        in.at("ticksPerSecond", [&] { in.refuse("not above 0 and at most 1000"); });
+        in.refuse("ticksPerSecond", "not above 0 and at most 1000");
     }
     message.inputDelay = from.getInputDelay();
     refuseAbove(in, "inputDelay", message.inputDelay, maxInputDelay);
     message.maxCommandsPerIntent = from.getMaxCommandsPerIntent();
     refuseAbove(in, "maxCommandsPerIntent", message.maxCommandsPerIntent, maxCommandsPerIntent);
     if (message.maxCommandsPerIntent == 0) {
-        in.at("maxCommandsPerIntent", [&] { in.refuse("0 is below 1"); });
+        in.refuse("maxCommandsPerIntent", "0 is below 1");
     }
     message.lastSequence = from.getLastSequence();
     message.resume = resumeToken(in, from.getResume());
@@ -167,8 +167,7 @@ Intent read(Reading& in, schema::Intent::Reader from) {
                                   checkpoint.getSome().getMotionRoot()};
             return message;
     }
-    in.at("checkpoint", [&] { in.refuse("neither none nor some"); });
-    return message;
+    in.refuse("checkpoint", "neither none nor some");
 }
 
 Frame read(Reading& in, schema::Frame::Reader from) {
@@ -248,14 +247,14 @@ View read(Reading& in, schema::View::Reader from) {
     const auto flags = from.getFlags();
     in.sizeOf("flags", flags, maxViewBodies, 1);
     if (flags.size() != message.poses.size()) {
-        in.at("flags", [&] { in.refuse("not one byte a body"); });
+        in.refuse("flags", "not one byte a body");
     }
     message.flags.assign(flags.begin(), flags.end());
     message.contacts = readContacts(in, from.getContacts());
     const auto bodies = from.getBodies();
     const std::size_t count = in.sizeOf("bodies", bodies, maxViewBodies, 4);
     if (count != 0 && count != message.poses.size()) {
-        in.at("bodies", [&] { in.refuse("not one id a body"); });
+        in.refuse("bodies", "not one id a body");
     }
     message.bodies = numbers<BodyId>(bodies);
     message.shapes = readShapes(in, from, message.poses.size());

@@ -2,21 +2,6 @@
 
 namespace huestep::protocol::wire {
 
-std::string Reading::where() const {
-    std::string path(m_name);
-    for (std::size_t i = 0; i < m_depth && i < m_steps.size(); ++i) {
-        if (!path.empty()) path += '.';
-        path += m_steps[i].field;
-        if (m_steps[i].index != noIndex) path += '[' + std::to_string(m_steps[i].index) + ']';
-    }
-    return path;
-}
-
-void Reading::refuse(std::string reason) const {
-    const std::string path = where();
-    throw Refused{path.empty() ? std::move(reason) : path + ": " + reason};
-}
-
 std::string Reading::text(const char* field, std::string_view value, std::size_t most) {
     at(field, [&] {
         if (value.size() > most) {

@@ -1,15 +1,13 @@
 /// Reading hostile Cap'n Proto messages: where we are, what is allowed, how a refusal is said.
 ///
-/// Inside this folder a refusal is an exception, as Cap'n Proto's own refusals are; both are caught
-/// in `readMessage`, the one border, and never leave it. That keeps the field-by-field code free of
-/// a branch after every line.
+/// Our refusals (trail.h) and Cap'n Proto's own are exceptions; both are caught in `readMessage`,
+/// the one border, and never leave it.
 #pragma once
 
 #include <capnp/message.h>
 #include <capnp/schema.h>
 #include <kj/exception.h>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -22,13 +20,9 @@
 
 #include "core/math/vec.h"
 #include "core/result.h"
+#include "protocol/trail.h"
 
 namespace huestep::protocol::wire {
-
-/// Thrown by `Reading::refuse` and caught by `readMessage`.
-struct Refused {
-    std::string reason;
-};
 
 /// Pointers from the root to the deepest field: Frame, list, command, spawn, list, body, list,
 /// shape, list, vertex. Eight would do if a spawn's lists stood in the command and a vertex were
@@ -65,34 +59,10 @@ inline std::size_t textWords(std::string_view text) {
 }
 
 /// The place in a message being read, and what may still be made of it.
-class Reading {
+class Reading : public Trail {
  public:
     /// `name`: in front of every sentence; may be empty. `words`: size of the message.
-    Reading(std::string_view name, std::size_t words) : m_name(name), m_budget(4 * words) {}
-
-    /// Does `f` inside a field. The step is left on a normal return only, so that after an
-    /// exception `where` still tells how far we had come.
-    template <class F>
-    decltype(auto) at(const char* field, F&& f) {
-        return at(field, noIndex, static_cast<F&&>(f));
-    }
-    template <class F>
-    decltype(auto) at(const char* field, std::size_t index, F&& f) {
-        if (m_depth < m_steps.size()) m_steps[m_depth] = {field, index};
-        ++m_depth;
-        if constexpr (std::is_void_v<decltype(f())>) {
-            f();
-            --m_depth;
-        } else {
-            auto result = f();
-            --m_depth;
-            return result;
-        }
-    }
-
-    /// "Frame.commands[3].action"
-    [[nodiscard]] std::string where() const;
-    [[noreturn]] void refuse(std::string reason) const;
+    Reading(std::string_view name, std::size_t words) : Trail(name), m_budget(4 * words) {}
 
     /// Counts what is made of the message, in words of its own layout. Lists may overlap in a
     /// hostile message and their structs may be cut short, so that few bytes become many values;
@@ -104,7 +74,7 @@ class Reading {
 
     /// The number, which must be finite.
     float real(const char* field, float value) {
-        if (!std::isfinite(value)) at(field, [&] { refuse("not a finite number"); });
+        if (!std::isfinite(value)) refuse(field, "not a finite number");
         return value;
     }
 
@@ -123,7 +93,7 @@ class Reading {
     Enum choice(const char* field, SchemaEnum value, Enum last) {
         const auto number = static_cast<std::uint16_t>(value);
         if (number > static_cast<std::uint16_t>(last)) {
-            at(field, [&] { refuse("unknown value " + std::to_string(number)); });
+            refuse(field, "unknown value " + std::to_string(number));
         }
         return static_cast<Enum>(number);
     }
@@ -146,16 +116,7 @@ class Reading {
     std::string text(const char* field, std::string_view value, std::size_t most);
 
  private:
-    struct Step {
-        const char* field = "";
-        std::size_t index = 0;
-    };
-    static constexpr std::size_t noIndex = ~std::size_t{0};
-
-    std::string_view m_name;
     std::size_t m_budget;
-    std::array<Step, 16> m_steps{};
-    std::size_t m_depth = 0;
 };
 
 /// Whether the bytes are UTF-8 (RFC 3629) without control characters (U+0000 to U+001F, U+007F).
@@ -169,8 +130,8 @@ std::string reasonOf(const ::kj::Exception& exception);
 template <class Schema, class T, class Read>
 Result<T> readMessage(std::string_view name, std::span<const std::byte> bytes, Read&& read) {
     if (bytes.empty() || bytes.size() % 8 != 0) {
-        return Error{std::string(name) + ": " + std::to_string(bytes.size()) +
-                     " bytes are not a whole number of 8-byte words"};
+        return Error{Trail(name).sentence(std::to_string(bytes.size()) +
+                                          " bytes are not a whole number of 8-byte words")};
     }
     const std::size_t words = bytes.size() / 8;
     Reading reading(name, words);
@@ -193,11 +154,11 @@ Result<T> readMessage(std::string_view name, std::span<const std::byte> bytes, R
         ::capnp::SegmentArrayMessageReader message(segments, options);
         return T(read(reading, message.template getRoot<Schema>()));
     } catch (const Refused& refused) {
-        return Error{refused.reason};
+        return Error{refused.sentence};
     } catch (const ::kj::Exception& exception) {
-        return Error{reading.where() + ": not a well-formed message (" + reasonOf(exception) + ")"};
+        return Error{reading.sentence("not well-formed (" + reasonOf(exception) + ")")};
     } catch (const std::exception& exception) {
-        return Error{reading.where() + ": cannot be read (" + exception.what() + ")"};
+        return Error{reading.sentence("cannot be read (" + std::string(exception.what()) + ")")};
     }
 }
 

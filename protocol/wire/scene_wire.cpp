@@ -74,7 +74,7 @@ PlayerDef readPlayers(Reading& in, schema::Players::Reader from) {
         players.body = in.at("body", [&] { return wire::readBody(in, from.getBody()); });
     }
     const auto points = from.getSpawnPoints();
-    const std::size_t count = in.sizeOf("spawnPoints", points, maxSpawnPoints, 8);
+    const std::size_t count = in.sizeOf("spawnPoints", points, caps::maxSpawnPoints, 8);
     players.spawnPoints.reserve(count);
     for (unsigned i = 0; i < count; ++i) {
         players.spawnPoints.push_back(in.at("spawnPoints", i, [&] {
@@ -124,6 +124,7 @@ std::size_t contentWords(const Scene& scene) {
 
 void put(schema::Body::Builder to, const BodyDef& body) {
     to.setId(body.id);
+    to.setFirstShape(body.firstShape);
     to.setType(static_cast<schema::BodyType>(body.type));
     to.setFixedRotation(body.fixedRotation);
     to.setMaySleep(body.maySleep);
@@ -143,6 +144,7 @@ void put(schema::Body::Builder to, const BodyDef& body) {
 BodyDef readBody(Reading& in, schema::Body::Reader from) {
     BodyDef body;
     body.id = from.getId();
+    body.firstShape = from.getFirstShape();
     body.type = in.choice("type", from.getType(), BodyType::Dynamic);
     body.fixedRotation = from.getFixedRotation();
     body.maySleep = from.getMaySleep();
@@ -263,15 +265,19 @@ void put(schema::Scene::Builder to, const Scene& scene) {
 }
 
 Scene readScene(Reading& in, schema::Scene::Reader from) {
+    if (from.getVersion() != sceneVersion) {
+        in.refuse("version", "is " + std::to_string(from.getVersion()) +
+                                 ", this program reads version " + std::to_string(sceneVersion));
+    }
     Scene scene;
     const auto name = from.getName();
-    scene.name = in.text("name", {name.begin(), name.size()}, maxSceneName);
+    scene.name = in.text("name", {name.begin(), name.size()}, caps::maxSceneName);
     scene.gravity = in.point("gravity", from.getGravity());
     scene.stepSeconds = in.real("stepSeconds", from.getStepSeconds());
     scene.substeps = from.getSubsteps();
     scene.sleep = from.getSleep();
-    scene.bodies = readBodies(in, from.getBodies(), maxSceneBodies);
-    scene.joints = readJoints(in, from.getJoints(), maxSceneJoints);
+    scene.bodies = readBodies(in, from.getBodies(), caps::maxBodies);
+    scene.joints = readJoints(in, from.getJoints(), caps::maxJoints);
     if (from.hasPlayers()) {
         scene.players = in.at("players", [&] { return readPlayers(in, from.getPlayers()); });
     }

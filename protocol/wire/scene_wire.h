@@ -1,5 +1,5 @@
 /// Bodies, joints and scenes to Cap'n Proto and back. Reading refuses what is not finite, unknown
-/// or more than its limit; core's `check` judges the rest.
+/// or more than core's caps; core's `check` judges the rest.
 #pragma once
 
 #include "core/scene/scene.h"
@@ -7,12 +7,6 @@
 #include "protocol/wire/reading.h"
 
 namespace huestep::protocol::wire {
-
-inline constexpr std::size_t maxSceneName = 256;
-inline constexpr std::size_t maxSpawnPoints = 1024;
-/// Of a scene file: what core allows a scene at most is less, and said better by `check`.
-inline constexpr std::size_t maxSceneBodies = 1u << 20;
-inline constexpr std::size_t maxSceneJoints = 1u << 20;
 
 /// Words of what the struct points to, itself aside.
 std::size_t contentWords(const BodyDef& body);

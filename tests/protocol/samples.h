@@ -72,6 +72,7 @@ inline ShapeDef randomShape(Draw& draw) {
 inline BodyDef randomBody(Draw& draw, std::size_t mostShapes = 3) {
     BodyDef body;
     body.id = draw.word();
+    body.firstShape = draw.word();
     body.type = static_cast<BodyType>(draw.below(3));
     body.fixedRotation = draw.coin();
     body.maySleep = draw.coin();
