@@ -28,11 +28,13 @@ struct Contact {
     bool touched = false;         ///< touching before this step
     bool spare = false;
 
-    // The manifold at `state.relative`: anchors from the two centres of mass, in the bodies'
-    // frames.
-    Vec2 normal;  ///< frame of A
+    // The manifold at `state.relative`, turned into the world as body A was then. Anchors are from
+    // the two centres of mass; they coincided when the manifold was made.
+    Vec2 normal;
     Vec2 anchorA[2];
     Vec2 anchorB[2];
+    Rotation rotationA;  // of the bodies then
+    Rotation rotationB;
     float separation[2]{};
     std::uint16_t feature[2]{};
 };

@@ -170,6 +170,9 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
             const std::uint32_t at = nextLane[colours[i]]++;
             plan.contactOfLane[at] = plan.links[link].source;
             plan.lanePlaces[at] = places[i];
+            for (const BodyPlace place : {places[i].a, places[i].b}) {
+                plan.hasContact[static_cast<std::size_t>(readPlace(place))] = 1;
+            }
         }
     }
 }
@@ -196,6 +199,7 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     builder.sortLinks();
     builder.placeOf.assign(bodies.moves.size(), fixedWorld);
     plan.bodyOfPlace.assign(1, none);
+    plan.hasContact.assign(1, 0);
 
     // Own bodies of every batch, by id: one walk over the awake bodies into buckets.
     std::vector<std::vector<std::uint32_t>> own(plan.batches.size());
@@ -210,6 +214,7 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
             plan.bodyOfPlace.push_back(body);
         }
         plan.batches[batch].endPlace = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
+        plan.hasContact.resize(plan.bodyOfPlace.size(), 0);
         builder.colourBatch(batch);
     }
 }

@@ -130,6 +130,22 @@ RotationT<Real> normalized(RotationT<Real> q) {
     return {q.c / l, q.s / l};
 }
 
+/// A rotation in one number, to about 2e-7 rad: the tangent of half its angle, t = s / (1 + c), for
+/// c ≥ 0; for c < 0 that of the opposite rotation, moved by 2 away from zero. In [−3, 3].
+constexpr float turnOf(RotationT<float> q) {
+    if (q.c >= 0.0f) return q.s / (1.0f + q.c) + 0.0f;
+    const float t = -q.s / (1.0f - q.c);
+    return t < 0.0f ? t - 2.0f : t + 2.0f;
+}
+constexpr RotationT<float> fromTurn(float turn) {
+    const bool opposite = turn > 1.5f || turn < -1.5f;
+    const float t = !opposite ? turn : (turn < 0.0f ? turn + 2.0f : turn - 2.0f);
+    const float inverse = 1.0f / (1.0f + t * t);
+    const float c = (1.0f - t * t) * inverse;
+    const float s = (t + t) * inverse;
+    return opposite ? RotationT<float>{-c, -s} : RotationT<float>{c, s};
+}
+
 /// A rotation followed by a translation: where a body is.
 template <class Real>
 struct PoseT {

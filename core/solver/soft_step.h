@@ -70,6 +70,7 @@ class SoftStep {
         Vec2 acceleration;                          // m/s²
         float angular = 0;                          // rad/s²
         float linearFactor = 1, angularFactor = 1;  // of damping, a substep
+        Vec2 lag;  // m/s, by how much the mean velocity of a substep is behind that at its end
     };
     struct Pass;
 

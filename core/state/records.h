@@ -220,11 +220,14 @@ inline constexpr auto fieldsOf<JointImpulses> = std::to_array<Field>({
 static_assert(fieldsTile<JointImpulses>());
 
 /// A touching contact. The manifold is a function of the two shapes and `relative` alone, so only
-/// the pose at which it was made is kept; the impulses are in the order of its points.
+/// the pose at which it was made is kept, and how body A was turned then: while a manifold is kept,
+/// its normal and anchors keep their directions in the world. Impulses are in the order of its
+/// points.
 struct ContactState {
     ShapeId shapeA;  ///< the lower shape id
     ShapeId shapeB;
     Pose relative;  ///< body B's centre frame seen from body A's when the manifold was made
+    float turn;     ///< body A's rotation then, see `turnOf`
     std::array<float, 2> normalImpulse;   ///< N·s, ≥ 0
     std::array<float, 2> tangentImpulse;  ///< N·s
     float rollingImpulse;                 ///< N·m·s
@@ -237,9 +240,10 @@ inline constexpr auto fieldsOf<ContactState> = std::to_array<Field>({
     {"relative.y", FieldType::F32, 12},
     {"relative.c", FieldType::F32, 16},
     {"relative.s", FieldType::F32, 20},
-    {"normalImpulse", FieldType::F32, 24, 2},
-    {"tangentImpulse", FieldType::F32, 32, 2},
-    {"rollingImpulse", FieldType::F32, 40},
+    {"turn", FieldType::F32, 24},
+    {"normalImpulse", FieldType::F32, 28, 2},
+    {"tangentImpulse", FieldType::F32, 36, 2},
+    {"rollingImpulse", FieldType::F32, 44},
 });
 static_assert(fieldsTile<ContactState>());
 

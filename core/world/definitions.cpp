@@ -310,7 +310,8 @@ void World::Data::rebuildShapes() {
         for (; shape < state.shapes.size() && state.shapes[shape].body == info.id; ++shape) {
             const ShapeInfo& record = state.shapes[shape];
             const Hull hull = hullOf<float>(record);
-            for (std::size_t v = 0; v < static_cast<std::size_t>(hull.count); ++v) {
+            const bool turns = info.type() != BodyType::Static;
+            for (std::size_t v = 0; turns && v < static_cast<std::size_t>(hull.count); ++v) {
                 s.reach[body] = maxOf(s.reach[body], length(hull.vertices[v]) + hull.radius);
             }
             s.hulls.push_back(hull);

@@ -71,12 +71,12 @@ std::vector<ContactView> World::contactViews() const {
         ContactView view;
         view.shapeA = c.state.shapeA;
         view.shapeB = c.state.shapeB;
-        view.normal = rotate(a.q, c.normal);
+        view.normal = c.normal;
         view.pointCount = c.pointCount;
         view.colour = colours[i];
         for (std::size_t k = 0; k < c.pointCount; ++k) {
-            const Vec2 onA = transform(a, c.anchorA[k]);
-            const Vec2 onB = transform(b, c.anchorB[k]);
+            const Vec2 onA = a.p + rotate(relative(c.rotationA, a.q), c.anchorA[k]);
+            const Vec2 onB = b.p + rotate(relative(c.rotationB, b.q), c.anchorB[k]);
             view.point[k] = 0.5f * (onA + onB);
             view.separation[k] = c.separation[k] + dot(view.normal, onB - onA);
             view.normalImpulse[k] = c.state.normalImpulse[k];

@@ -24,7 +24,7 @@ struct Shapes {
     std::vector<Hull> hulls;           // by shape
     std::vector<ShapeProxy> proxies;   // by shape
     std::vector<std::uint32_t> first;  // by body: its first shape; one more at the end
-    std::vector<float> reach;          // by body, m: farthest point of a shape from the centre
+    std::vector<float> reach;  // by body, m: farthest point of a shape from the centre; 0: static
     std::vector<ShapePair> forbidden;  // body places that a joint keeps from touching, sorted
     std::vector<ConstraintPlaces> jointBodies;  // by joint
     std::vector<std::uint32_t> kinematic;       // places of kinematic bodies
@@ -92,7 +92,8 @@ struct World::Data {
     void settleIslands();
 
     [[nodiscard]] NarrowPhaseInput narrowPhaseInput() const {
-        return {state.motions, accelerators.shapes.hulls, accelerators.tight};
+        return {state.motions, accelerators.shapes.hulls, accelerators.shapes.reach,
+                accelerators.tight};
     }
 };
 
