@@ -94,7 +94,7 @@ void addSleepersAndGhosts(Scene& scene) {
     ball.shapes[0].density = 5.0f;
     add(scene, ball);
     for (std::uint32_t i = 0; i < 8; ++i) {
-        const Vec2 position{-17.0f + static_cast<float>(i) * 0.2f, 6.0f};
+        const Vec2 position{-17.0f + static_cast<float>(i) * 0.2f, i % 2 == 0 ? 6.0f : 7.0f};
         BodyDef ghost = bodyOf(BodyType::Dynamic, position, ShapeDef::circle({}, 0.3f));
         // Even ones share a group that never touches; odd ones only touch category 1.
         ghost.shapes[0].filter = i % 2 == 0 ? Filter{1, ~0u, -7} : Filter{4, 1, 0};
