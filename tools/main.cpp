@@ -46,7 +46,7 @@ int runProgram(int count, char** words) {
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& wrong) {
-        return badUse(wrong.what());
+        return badUse(wrong.what() + std::string("; see huestep --help"));
     }
     catchInterrupts();
     const Answer answer = menu.chosen();

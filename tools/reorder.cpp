@@ -1,7 +1,6 @@
 #include "tools/reorder.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <random>
 
@@ -12,20 +11,23 @@ namespace {
 
 constexpr std::uint32_t maxNoise = 60;  // bodies: enough for islands, contacts, joints and sleep
 
-/// Writes out ids that are 0. A world hands free ids to them in the order of the list and shows
-/// its records by id, so the ids it has beyond the written ones, ascending, are theirs in order.
-template <class Def, class Info>
-void writeIds(std::vector<Def>& defs, std::span<const Info> infos) {
-    std::vector<std::uint32_t> written;
-    for (const Def& def : defs)
-        if (def.id != 0) written.push_back(def.id);
-    std::sort(written.begin(), written.end());
-    std::vector<std::uint32_t> given;
-    for (const Info& info : infos)
-        if (!std::binary_search(written.begin(), written.end(), info.id)) given.push_back(info.id);
-    auto next = given.begin();
-    for (Def& def : defs)
-        if (def.id == 0) def.id = *next++;
+/// Writes the ids of bodies, joints and shapes into the scene, as a world of it would have them.
+void writeIds(Scene& scene) {
+    const std::vector<BodyId> bodies = bodyIdsOf(scene);
+    const std::vector<JointId> joints = jointIdsOf(scene);
+    for (std::size_t i = 0; i < bodies.size(); ++i) scene.bodies[i].id = bodies[i];
+    for (std::size_t i = 0; i < joints.size(); ++i) scene.joints[i].id = joints[i];
+    std::vector<std::size_t> byId(bodies.size());
+    std::iota(byId.begin(), byId.end(), std::size_t{0});
+    std::sort(byId.begin(), byId.end(),
+              [&](std::size_t a, std::size_t b) { return bodies[a] < bodies[b]; });
+    ShapeId next = std::max(scene.counters.nextShape, 1u);
+    for (const std::size_t i : byId) {
+        BodyDef& body = scene.bodies[i];
+        next = std::max(next, body.firstShape);
+        body.firstShape = next;
+        next += static_cast<ShapeId>(body.shapes.size());
+    }
 }
 
 std::vector<std::uint32_t> permutation(std::size_t count, std::mt19937_64& random) {
@@ -69,55 +71,56 @@ BodyDef noiseBody(std::uint32_t k, float x0) {
     return body;
 }
 
-/// Adds noise at the front, the middle and the end of the lists, with the ids that the two
-/// functions give to noise body k and noise joint k.
-template <class BodyIdOf, class JointIdOf>
-Noisy addNoise(const Scene& scene, BodyIdOf bodyId, JointIdOf jointId) {
-    const std::uint32_t count = std::min(maxNoise, scene.limits.commandsPerTick);
-    Noisy noisy;
-    Scene& out = noisy.scene = scene;
-    out.limits.bodies += count;
-    out.limits.shapes += count;
-    out.limits.joints += count;
-    const auto own = static_cast<std::uint32_t>(scene.bodies.size());
-    const float x0 = noiseX(scene);
-    for (std::uint32_t k = 0; k < count; ++k) {
-        BodyDef body = noiseBody(k, x0);
-        body.id = bodyId(k);
-        noisy.removal.push_back({0, k + 1, RemoveBody{body.id}});
-        out.bodies.push_back(std::move(body));
-        if (k % 4 != 3) continue;
-        JointDef rod;
-        rod.id = jointId(k / 4);
-        rod.kind = JointKind::Distance;
-        rod.bodyA = own + k - 1;
-        rod.bodyB = own + k;
-        rod.length = 1.4f;
-        out.joints.push_back(rod);
-    }
-    out = shuffled(out, 0x6e6f697365);
-    return noisy;
+/// A rod between bodies k − 1 and k of the noise, the first of which is at place `first`.
+JointDef noiseRod(std::uint32_t k, std::uint32_t first) {
+    JointDef rod;
+    rod.kind = JointKind::Distance;
+    rod.bodyA = first + k - 1;
+    rod.bodyB = first + k;
+    rod.length = 1.4f;
+    return rod;
 }
 
-template <class Def>
-std::uint32_t highestId(const std::vector<Def>& defs, std::uint32_t counter) {
-    std::uint32_t highest = counter == 0 ? 0 : counter - 1;
-    for (const Def& def : defs) highest = std::max(highest, def.id);
+/// Up to half of `count` odd ids, each just below one of the doubled ids `taken`; the rest above.
+std::vector<std::uint32_t> idsBetween(std::vector<std::uint32_t> taken, std::uint32_t count) {
+    std::sort(taken.begin(), taken.end());
+    const std::size_t between = std::min<std::size_t>(taken.size(), count / 2);
+    std::vector<std::uint32_t> ids;
+    for (std::size_t k = 0; k < between; ++k) ids.push_back(taken[k * taken.size() / between] - 1);
+    std::uint32_t next = taken.empty() ? 1 : taken.back() + 1;
+    while (ids.size() < count) ids.push_back(next++);
+    return ids;
+}
+
+/// The scene with doubled ids: with c shapes from id s on, a body now has them from 2 s on, so
+/// that 2 s − 1 is free, as the odd id below the body's own is.
+Scene doubled(Scene scene) {
+    writeIds(scene);
+    for (BodyDef& body : scene.bodies) {
+        body.id *= 2;
+        body.firstShape *= 2;
+    }
+    for (JointDef& joint : scene.joints) joint.id *= 2;
+    scene.counters = {1, 1, 1};
+    return scene;
+}
+
+std::uint32_t highestId(const Scene& scene) {
+    Scene written = scene;
+    writeIds(written);
+    std::uint32_t highest = 0;
+    for (const BodyDef& body : written.bodies)
+        highest = std::max(
+            {highest, body.id, body.firstShape + static_cast<ShapeId>(body.shapes.size())});
+    for (const JointDef& joint : written.joints) highest = std::max(highest, joint.id);
     return highest;
 }
 
 }  // namespace
 
-Result<Scene> withExplicitIds(const Scene& scene) {
-    const Result<World> world = World::create(scene);
-    if (!world) return world.error();
-    Scene out = scene;
-    writeIds(out.bodies, world->bodies());
-    writeIds(out.joints, world->joints());
-    return out;
-}
-
-Scene shuffled(const Scene& scene, std::uint64_t seed) {
+Scene shuffled(const Scene& given, std::uint64_t seed) {
+    Scene scene = given;
+    writeIds(scene);
     std::mt19937_64 random(seed);
     const std::vector<std::uint32_t> bodies = permutation(scene.bodies.size(), random);
     const std::vector<std::uint32_t> joints = permutation(scene.joints.size(), random);
@@ -133,35 +136,42 @@ Scene shuffled(const Scene& scene, std::uint64_t seed) {
     return out;
 }
 
-Result<Noisy> withNoiseAbove(const Scene& scene) {
-    const std::uint32_t body = highestId(scene.bodies, scene.counters.nextBody);
-    const std::uint32_t joint = highestId(scene.joints, scene.counters.nextJoint);
-    const std::uint32_t top = std::numeric_limits<std::uint32_t>::max() - 2 * maxNoise;
-    if (body > top || joint > top) return Error{"--reorder: no ids are left above the scene's"};
-    return addNoise(
-        scene, [=](std::uint32_t k) { return body + 1 + k; },
-        [=](std::uint32_t k) { return joint + 1 + k; });
-}
+Result<NoisePair> withNoise(const Scene& scene) {
+    if (highestId(scene) > (caps::maxId - 2 * maxNoise) / 2)
+        return Error{"--reorder: the scene's ids are too high to leave room for noise between"};
+    NoisePair pair;
+    pair.quiet = doubled(scene);
+    const std::uint32_t count = std::min(maxNoise, scene.limits.commandsPerTick);
+    pair.quiet.limits.bodies += count;
+    pair.quiet.limits.shapes += count;
+    pair.quiet.limits.joints += count;
 
-Result<Noisy> withNoiseBetween(const Scene& scene) {
-    const std::uint32_t top = std::numeric_limits<std::uint32_t>::max() / 2 - maxNoise;
-    if (highestId(scene.bodies, scene.counters.nextBody) > top ||
-        highestId(scene.joints, scene.counters.nextJoint) > top)
-        return Error{"--reorder: the scene's ids are too high to be doubled"};
-    Scene spread = scene;
-    for (BodyDef& body : spread.bodies) body.id *= 2;
-    for (JointDef& joint : spread.joints) joint.id *= 2;
-    const auto odd = [](std::uint32_t k) { return 2 * k + 1; };
-    return addNoise(spread, odd, odd);
-}
+    Scene& noisy = pair.noisy = pair.quiet;
+    const std::vector<BodyId> bodyIds = idsBetween(bodyIdsOf(noisy), count);
+    const std::vector<JointId> jointIds = idsBetween(jointIdsOf(noisy), count / 4);
+    std::vector<std::pair<BodyId, ShapeId>> owners;  // of the scene: id and first shape
+    for (const BodyDef& body : noisy.bodies) owners.emplace_back(body.id, body.firstShape);
+    const auto first = static_cast<std::uint32_t>(noisy.bodies.size());
+    const float x0 = noiseX(scene);
+    for (std::uint32_t k = 0; k < count; ++k) {
+        BodyDef body = noiseBody(k, x0);
+        body.id = bodyIds[k];
+        for (const auto& [id, shape] : owners)
+            if (id == body.id + 1) body.firstShape = shape - 1;
+        noisy.bodies.push_back(std::move(body));
+        if (k % 4 == 3) {
+            noisy.joints.push_back(noiseRod(k, first));
+            noisy.joints.back().id = jointIds[k / 4];
+        }
+        pair.removal.push_back({0, k + 1, RemoveBody{bodyIds[k]}});
+    }
+    noisy = shuffled(noisy, 3);
 
-Result<Scene> withCountersOf(const Scene& scene, const Noisy& noisy) {
-    const Result<World> world = World::create(noisy.scene);
+    const Result<World> world = World::create(noisy);
     if (!world) return world.error();
-    Scene out = scene;
-    out.limits = noisy.scene.limits;
-    out.counters = {world->info().nextBody, world->info().nextShape, world->info().nextJoint};
-    return out;
+    pair.quiet.counters = {world->info().nextBody, world->info().nextShape,
+                           world->info().nextJoint};
+    return pair;
 }
 
 }  // namespace huestep::tools

@@ -1,5 +1,5 @@
 /// The same scene by other histories: other orders of creation, and noise that was created and
-/// destroyed. What must come out equal is written beside each.
+/// destroyed.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,23 @@
 
 namespace huestep::tools {
 
-/// The scene with every id written out as a world would give it. Requires a checked scene.
-Result<Scene> withExplicitIds(const Scene& scene);
-
-/// The scene's bodies and joints listed in another order, drawn from the seed. A world of it must
-/// equal a world of the scene from tick 0. Requires explicit ids.
+/// The scene's bodies and joints, with the ids that they have in its own order, listed in another
+/// one drawn from the seed. A world of it must equal a world of the scene from tick 0.
 Scene shuffled(const Scene& scene, std::uint64_t seed);
 
-/// A scene with noise: bodies with contacts and joints of their own, far from all others.
-struct Noisy {
-    Scene scene;
-    std::vector<Command> removal;  ///< host commands that remove the noise, in key order
+/// A scene with and without noise: bodies far from all others, with contacts and joints of their
+/// own, whose ids lie between and above the scene's.
+struct NoisePair {
+    /// The scene, its ids doubled to leave room, its counters where the noise would have left them.
+    Scene quiet;
+    Scene noisy;
+    /// Host commands that remove the noise. Given to both worlds in the same tick they must leave
+    /// the same state: in the quiet one they name bodies that do not exist and are rejected, and
+    /// the sequence of a rejected command counts as that of an applied one does.
+    std::vector<Command> removal;
 };
 
-/// Noise with ids above all others of the scene, listed among the others. Requires explicit ids.
-Result<Noisy> withNoiseAbove(const Scene& scene);
-
-/// The ids of the scene doubled, and noise with the odd ids between them. Requires explicit ids.
-Result<Noisy> withNoiseBetween(const Scene& scene);
-
-/// The scene without noise, but with counters as if it had had it: where `noisy`'s counters are.
-Result<Scene> withCountersOf(const Scene& scene, const Noisy& noisy);
+/// Requires a checked scene. Fails if its ids are too high to be doubled.
+Result<NoisePair> withNoise(const Scene& scene);
 
 }  // namespace huestep::tools

@@ -21,7 +21,7 @@ struct StateCost {
     double fullRootNs = 0.0;    ///< ns a body
 };
 
-/// The least of a few measurements of each hash, on a copy whose hashes nothing has asked for.
+/// The least of a few measurements of each hash, definitions unchanged since the last, as in a run.
 StateCost measureState(const World& world);
 
 /// What only Huestep says of a run.
