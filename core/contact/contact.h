@@ -23,6 +23,8 @@ struct Contact {
     float restitution = 0;
     float rollingResistance = 0;  ///< m: coefficient times the larger radius
     float tangentSpeed = 0;
+    float reach = 0;      ///< m: farthest point of either body that can turn, from its centre
+    float roundness = 0;  ///< m: the larger radius
     std::uint8_t pointCount = 0;  ///< 0: not touching
     bool made = false;            ///< the manifold below is that of `state.relative`
     bool touched = false;         ///< touching before this step

@@ -29,10 +29,8 @@ bool mayRecycle(const Contact& contact, const Pose& now, const NarrowPhaseInput&
     if (!(cosineBetween(qB, contact.rotationB) > recycleCosine)) return false;
     const Pose& made = contact.state.relative;
     const Rotation turned = relative(made.q, now.q);
-    const float roundness = maxOf(in.hulls[contact.placeA].radius, in.hulls[contact.placeB].radius);
-    if (roundness * (1.0f - turned.c) > recycleLift) return false;
-    const float reach = maxOf(in.reach[contact.bodyA], in.reach[contact.bodyB]);
-    const float swing = reach * (turned.s < 0.0f ? -turned.s : turned.s);
+    if (contact.roundness * (1.0f - turned.c) > recycleLift) return false;
+    const float swing = contact.reach * (turned.s < 0.0f ? -turned.s : turned.s);
     return length(now.p - made.p) + swing < recycleDistance;
 }
 

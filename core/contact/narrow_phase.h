@@ -12,7 +12,6 @@ namespace huestep {
 struct NarrowPhaseInput {
     std::span<const BodyMotion> motions;
     std::span<const Hull> hulls;
-    std::span<const float> reach;    ///< by body, m: 0 for what never turns
     std::span<const Bounds> bounds;  ///< tight, grown by half the speculative margin
 };
 

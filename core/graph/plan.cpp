@@ -137,14 +137,19 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
         ++(link < plan.jointLinks ? joints : contacts)[colours[i]];
     }
     Batch& b = plan.batches[batch];
+    const auto blocksSoFar = [this] {
+        return static_cast<std::uint32_t>(plan.contactOfLane.size()) / blockLanes;
+    };
     b.firstColour = static_cast<std::uint32_t>(plan.runs.size());
+    b.firstBlock = blocksSoFar();
+    b.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     std::array<std::uint32_t, colourCount> nextLane{};
     std::array<std::uint32_t, colourCount> nextJoint{};
     for (std::size_t c = 0; c < colourCount; ++c) {
         if (contacts[c] + joints[c] == 0) continue;
         ColourRun run;
         run.colour = static_cast<std::uint8_t>(c);
-        run.firstBlock = static_cast<std::uint32_t>(plan.contactOfLane.size()) / blockLanes;
+        run.firstBlock = blocksSoFar();
         run.contactCount = contacts[c];
         run.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
         run.jointCount = joints[c];
@@ -158,6 +163,8 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
         plan.jointPlaces.resize(plan.jointOrder.size());
     }
     b.endColour = static_cast<std::uint32_t>(plan.runs.size());
+    b.endBlock = blocksSoFar();
+    b.endJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
     plan.overflow += contacts[overflowColour] + joints[overflowColour];
     for (std::uint32_t i = 0; i < colours.size(); ++i) {

@@ -30,6 +30,8 @@ struct ColourRun {
 struct Batch {
     std::uint32_t firstPlace = 0, endPlace = 0;    ///< solver bodies
     std::uint32_t firstColour = 0, endColour = 0;  ///< runs
+    std::uint32_t firstBlock = 0, endBlock = 0;    ///< of contacts
+    std::uint32_t firstJoint = 0, endJoint = 0;    ///< in solving order
     std::uint32_t constraints = 0;
     bool giant = false;
 };

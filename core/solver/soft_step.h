@@ -15,6 +15,7 @@
 #include "core/parallel/executor.h"
 #include "core/solver/contact_block.h"
 #include "core/world/event.h"
+#include "core/world/stage_timer.h"
 
 namespace huestep {
 
@@ -45,19 +46,15 @@ struct SolverWorld {
     std::uint32_t substeps = 4;
 };
 
-/// The rows of a step, kept between steps for their memory alone.
+/// Solves a plan. Holds the rows of a step, kept from one to the next for their memory alone.
 class SoftStep {
  public:
-    /// Rows from contacts, joints and motions. Parallel over blocks.
-    void prepare(const Plan& plan, const SolverWorld& world, Executor* executor);
-
-    /// All substeps. Batches side by side; a giant batch on all threads.
+    /// Rows from contacts, joints and motions; all substeps; impulses back into contacts and
+    /// joints. A giant batch goes through each stage on all threads; any other goes through all of
+    /// them on one thread, while its rows are in that core's cache. `hits` gets contacts that met
+    /// hard, by key.
     void solve(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
-               Executor* executor);
-
-    /// Impulses back into contacts and joints; `hits` gets contacts that met hard, by key.
-    void store(const Plan& plan, const SolverWorld& world, Executor* executor,
-               std::vector<ContactHit>& hits);
+               Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer);
 
     /// Poses and velocities back into motions, free flight included; `broken` gets the places of
     /// bodies that turned non-finite or left the world, which stay where they were, at rest.
@@ -65,28 +62,45 @@ class SoftStep {
                 std::vector<std::uint32_t>& broken);
 
  private:
-    /// What drives a solver body besides constraints.
-    struct Drive {
+    /// What rows and passes need of a body beside its `SolverBody`, by solver place.
+    struct Source {
+        Pose pose;
+        Vec2 velocity;
+        float angularVelocity = 0;
+        float inverseMass = 0, inverseInertia = 0;
         Vec2 acceleration;                          // m/s²
-        float angular = 0;                          // rad/s²
+        float angularAcceleration = 0;              // rad/s²
         float linearFactor = 1, angularFactor = 1;  // of damping, a substep
         Vec2 lag;  // m/s, by how much the mean velocity of a substep is behind that at its end
     };
+    struct Range {
+        std::uint32_t begin = 0;
+        std::uint32_t end = 0;
+    };
     struct Pass;
 
-    void prepareBody(const Plan& plan, const SolverWorld& world, std::uint32_t place);
-    void prepareJoints(const Plan& plan, const SolverWorld& world, std::uint32_t begin,
-                       std::uint32_t end);
-    void prepareBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block,
-                      ContactFeatures& features);
-    void solveBatch(const Plan& plan, const Batch& batch, const Pass& pass, int worker, int workers,
-                    Executor* executor);
+    // rows.cpp
+    void prepareBodies(const Plan& plan, const SolverWorld& world, Range places);
+    void prepareJoints(const Plan& plan, const SolverWorld& world, Range joints);
+    void prepareBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
+                       ContactFeatures& features);
+    void prepareLane(const Contact& contact, const ConstraintBodies& places,
+                     const SolverWorld& world, ContactBlock& rows, std::uint32_t lane) const;
+    void storeBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
+                     std::vector<ContactHit>& hits) const;
+    void storeJoints(const SolverWorld& world, Range joints) const;
+
+    // soft_step.cpp
+    static Pass makePass(const SolverWorld& world, const ContactKernels& kernels);
+    void solveGiant(const Plan& plan, const SolverWorld& world, const Batch& batch, Pass pass,
+                    Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer);
+    void substeps(const Plan& plan, const Batch& batch, const Pass& pass, int worker, int workers,
+                  Executor* executor);
 
     std::vector<SolverBody> m_bodies;  // by solver place
-    std::vector<Drive> m_drives;
+    std::vector<Source> m_sources;     // by solver place
     std::vector<ContactBlock> m_blocks;
-    std::vector<JointRow> m_joints;  // in solver order
-    ContactFeatures m_features;
+    std::vector<JointRow> m_joints;  // in solving order
 };
 
 }  // namespace huestep

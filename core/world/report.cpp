@@ -18,6 +18,8 @@ std::string_view nameOf(Stage stage) {
             return "solve";
         case Stage::Store:
             return "store";
+        case Stage::Batches:
+            return "batches";
         case Stage::Finish:
             return "finish";
         case Stage::Sleep:

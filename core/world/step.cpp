@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/parallel/over_range.h"
 #include "core/solver/contact_kernels.h"
 #include "core/world/world_data.h"
 
@@ -20,34 +21,6 @@ constexpr float travelTicks = 4.0f;  // how far ahead fat bounds look
 // Sleep: an island whose bodies have all been slower than this for half a second.
 constexpr float sleepSpeed = 0.05f;  // m/s, of any point of the body
 constexpr float sleepSeconds = 0.5f;
-
-/// Measures stages by the caller's clock, if it gave one.
-class StageTimer {
- public:
-    StageTimer(Clock clock, StepReport& report)
-        : m_clock(clock), m_report(report), m_last(clock ? clock() : 0) {}
-    void done(Stage stage) {
-        if (!m_clock) return;
-        const std::uint64_t now = m_clock();
-        m_report.nanoseconds[static_cast<std::size_t>(stage)] += now - m_last;
-        m_last = now;
-    }
-
- private:
-    Clock m_clock;
-    StepReport& m_report;
-    std::uint64_t m_last;
-};
-
-template <class F>
-void overRange(Executor* executor, std::size_t count, std::uint32_t grain, F&& f) {
-    const auto n = static_cast<std::uint32_t>(count);
-    if (executor != nullptr && executor->threads() > 1) {
-        executor->forBlocks(n, grain, f);
-    } else if (n > 0) {
-        f(0u, n);
-    }
-}
 
 bool keyBefore(const ContactChange& a, const ContactChange& b) {
     return a.shapeA != b.shapeA ? a.shapeA < b.shapeA : a.shapeB < b.shapeB;
@@ -89,12 +62,8 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
                             state.info().substeps};
     SoftStep& solver = accelerators.solver;
     const Plan& plan = accelerators.plan;
-    solver.prepare(plan, world, executor);  // contacts, joints, motions → rows
-    timer.done(Stage::Prepare);
-    solver.solve(plan, world, contactKernels(with.simd), executor);
-    timer.done(Stage::Solve);
-    solver.store(plan, world, executor, events.hits);  // rows → impulses, hits
-    timer.done(Stage::Store);
+    // Contacts, joints, motions → rows → impulses, hits; times are kept by stage within.
+    solver.solve(plan, world, contactKernels(with.simd), executor, events.hits, timer);
     std::vector<std::uint32_t> broken;
     solver.finish(plan, world, executor, broken);  // rows → motions
     for (const std::uint32_t body : broken) events.quarantined.push_back(state.bodies[body].id);
@@ -171,8 +140,7 @@ void World::Data::findPairs(Executor* executor) {
 namespace {
 
 /// What of a contact follows from its two shapes.
-Contact contactOf(const ShapePair& pair, std::span<const ShapeProxy> proxies,
-                  std::span<const ShapeInfo> shapes) {
+Contact contactOf(const ShapePair& pair, const Shapes& known, std::span<const ShapeInfo> shapes) {
     const ShapeInfo& a = shapes[pair.a];
     const ShapeInfo& b = shapes[pair.b];
     Contact c{};
@@ -180,12 +148,13 @@ Contact contactOf(const ShapePair& pair, std::span<const ShapeProxy> proxies,
     c.state.shapeB = b.id;
     c.placeA = pair.a;
     c.placeB = pair.b;
-    c.bodyA = proxies[pair.a].body;
-    c.bodyB = proxies[pair.b].body;
+    c.bodyA = known.proxies[pair.a].body;
+    c.bodyB = known.proxies[pair.b].body;
+    c.reach = maxOf(known.reach[c.bodyA], known.reach[c.bodyB]);
+    c.roundness = maxOf(a.radius, b.radius);
     c.friction = std::sqrt(a.friction * b.friction);
     c.restitution = maxOf(a.restitution, b.restitution);
-    c.rollingResistance =
-        maxOf(a.rollingResistance, b.rollingResistance) * maxOf(a.radius, b.radius);
+    c.rollingResistance = maxOf(a.rollingResistance, b.rollingResistance) * c.roundness;
     c.tangentSpeed = a.tangentSpeed + b.tangentSpeed;
     return c;
 }
@@ -208,7 +177,7 @@ void World::Data::layOutContacts() {
                     state.shapes.begin());
             };
             Contact contact =
-                contactOf({placeOf(c.shapeA), placeOf(c.shapeB)}, shapes.proxies, state.shapes);
+                contactOf({placeOf(c.shapeA), placeOf(c.shapeB)}, shapes, state.shapes);
             contact.state = c;
             contact.pointCount = 2;  // until the manifold is made again
             remakeManifold(contact, narrowPhaseInput());
@@ -236,7 +205,7 @@ void World::Data::layOutContacts() {
         if (from != old.end() && ShapePair{from->placeA, from->placeB} == pair) {
             acc.contacts.push_back(*from++);
         } else {
-            acc.contacts.push_back(contactOf(pair, shapes.proxies, state.shapes));
+            acc.contacts.push_back(contactOf(pair, shapes, state.shapes));
         }
     }
     dropBefore(nullptr);

@@ -44,9 +44,10 @@ enum class Stage : std::uint8_t {
     Pairs,
     Collide,
     Colour,
-    Prepare,
+    Prepare,  ///< of giant islands, as are the next two
     Solve,
     Store,
+    Batches,  ///< of all other islands: prepare to store in one go
     Finish,
     Sleep,
     Count

@@ -92,8 +92,7 @@ struct World::Data {
     void settleIslands();
 
     [[nodiscard]] NarrowPhaseInput narrowPhaseInput() const {
-        return {state.motions, accelerators.shapes.hulls, accelerators.shapes.reach,
-                accelerators.tight};
+        return {state.motions, accelerators.shapes.hulls, accelerators.tight};
     }
 };
 

@@ -1,0 +1,102 @@
+// The last stage: where bodies went.
+
+#include <algorithm>
+
+#include "core/math/finite.h"
+#include "core/math/trig.h"
+#include "core/parallel/over_range.h"
+#include "core/solver/soft_step.h"
+
+namespace huestep {
+
+namespace {
+
+constexpr std::uint32_t bodyGrain = 256;
+
+/// Moves a body to where it went, unless that is nowhere: then it stays, at rest.
+bool settle(BodyMotion& motion, const BodyMotion& next) {
+    const bool whole = isFinite(next.position) && isFinite(next.velocity) &&
+                       isFinite(next.angularVelocity) && isFinite(next.rotation.c) &&
+                       isFinite(next.rotation.s);
+    const auto outside = [](float x) { return x > maxCoordinate || x < -maxCoordinate; };
+    if (!whole || outside(next.position.x) || outside(next.position.y)) {
+        motion.velocity = {};
+        motion.angularVelocity = 0.0f;
+        return false;
+    }
+    motion.position = {canonicalZero(next.position.x), canonicalZero(next.position.y)};
+    motion.rotation = {canonicalZero(next.rotation.c), canonicalZero(next.rotation.s)};
+    motion.velocity = {canonicalZero(next.velocity.x), canonicalZero(next.velocity.y)};
+    motion.angularVelocity = canonicalZero(next.angularVelocity);
+    return true;
+}
+
+/// A body without constraints moves with the mean of its old and new velocity: exact for constant
+/// acceleration, the parabola (physics page, 7). It turns by ω Δt, exactly.
+BodyMotion freeFlight(const BodyMotion& motion, const BodyInfo& info, const BodyForce* force,
+                      Vec2 gravity, float dt) {
+    BodyMotion next = motion;
+    Vec2 acceleration = info.gravityScale * gravity;
+    float angular = 0.0f;
+    if (force != nullptr) {
+        acceleration += info.inverseMass * force->force;
+        angular = info.inverseInertia * force->torque;
+    }
+    next.velocity =
+        (1.0f / (1.0f + dt * info.linearDamping)) * (motion.velocity + dt * acceleration);
+    next.angularVelocity =
+        (motion.angularVelocity + dt * angular) * (1.0f / (1.0f + dt * info.angularDamping));
+    next.position = motion.position + (0.5f * dt) * (motion.velocity + next.velocity);
+    const float turn = 0.5f * dt * (motion.angularVelocity + next.angularVelocity);
+    if (turn != 0.0f) next.rotation = normalized(compose(rotationOf(turn), motion.rotation));
+    return next;
+}
+
+}  // namespace
+
+void SoftStep::finish(const Plan& plan, const SolverWorld& world, Executor* executor,
+                      std::vector<std::uint32_t>& broken) {
+    const std::size_t places = plan.bodyOfPlace.size();
+    auto brokenPlaces = perBlock<std::vector<std::uint32_t>>(places, bodyGrain);
+    overRange(executor, places, bodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t place = std::max(begin, 1u); place < end; ++place) {
+            const std::uint32_t body = plan.bodyOfPlace[place];
+            if (!world.bodies[body].dynamic()) continue;  // copies of kinematic bodies
+            const SolverBody& s = m_bodies[place];
+            BodyMotion& motion = world.motions[body];
+            BodyMotion next = motion;
+            next.position = motion.position + Vec2{s.dx, s.dy};
+            next.rotation = normalized(compose(Rotation{s.dc, s.ds}, motion.rotation));
+            next.velocity = {s.vx, s.vy};
+            next.angularVelocity = s.w;
+            if (!settle(motion, next)) brokenPlaces[begin / bodyGrain].push_back(body);
+        }
+    });
+    const std::size_t free = plan.freeBodies.size();
+    auto brokenFree = perBlock<std::vector<std::uint32_t>>(free, bodyGrain);
+    overRange(executor, free, bodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const std::uint32_t body = plan.freeBodies[i];
+            const BodyForce* force = world.forces.empty() ? nullptr : &world.forces[body];
+            BodyMotion& motion = world.motions[body];
+            if (!settle(motion, freeFlight(motion, world.bodies[body], force, world.gravity,
+                                           world.stepSeconds))) {
+                brokenFree[begin / bodyGrain].push_back(body);
+            }
+        }
+    });
+    for (const auto& part : brokenPlaces) broken.insert(broken.end(), part.begin(), part.end());
+    for (const auto& part : brokenFree) broken.insert(broken.end(), part.begin(), part.end());
+    for (const std::uint32_t body : world.kinematic) {
+        BodyMotion& motion = world.motions[body];
+        if (motion.velocity == Vec2{} && motion.angularVelocity == 0.0f) continue;
+        BodyMotion next = motion;
+        next.position = motion.position + world.stepSeconds * motion.velocity;
+        next.rotation = normalized(
+            compose(rotationOf(world.stepSeconds * motion.angularVelocity), motion.rotation));
+        if (!settle(motion, next)) broken.push_back(body);
+    }
+    std::sort(broken.begin(), broken.end());
+}
+
+}  // namespace huestep

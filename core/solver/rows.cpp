@@ -1,0 +1,205 @@
+// Rows of a step: from contacts, joints and motions before it, and back into them after it.
+
+#include "core/math/finite.h"
+#include "core/solver/soft_step.h"
+
+namespace huestep {
+
+namespace {
+
+/// A point that is not there: no mass, no impulse, so every row of it does nothing.
+void clearPoint(ContactPointRows& p, std::uint32_t lane) {
+    p.anchorAx[lane] = p.anchorAy[lane] = p.anchorBx[lane] = p.anchorBy[lane] = 0.0f;
+    p.separation[lane] = p.normalMass[lane] = p.tangentMass[lane] = 0.0f;
+    p.normalImpulse[lane] = p.tangentImpulse[lane] = 0.0f;
+    p.maxNormalImpulse[lane] = p.approach[lane] = 0.0f;
+}
+
+/// Padding: it reads the fixed world and writes to nowhere.
+void clearLane(ContactBlock& rows, std::uint32_t lane) {
+    clearPoint(rows.points[0], lane);
+    clearPoint(rows.points[1], lane);
+    rows.rollingMass[lane] = rows.rollingImpulse[lane] = 0.0f;
+}
+
+float inverseOf(float k) {
+    return k > 0.0f ? 1.0f / k : 0.0f;
+}
+
+}  // namespace
+
+void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range places) {
+    const float h = world.stepSeconds / static_cast<float>(world.substeps);
+    for (std::uint32_t place = places.begin; place < places.end; ++place) {
+        const std::uint32_t body = plan.bodyOfPlace[place];
+        if (body == none) {
+            m_bodies[place] = {};
+            m_sources[place] = {};
+            continue;
+        }
+        const BodyMotion& motion = world.motions[body];
+        const BodyInfo& info = world.bodies[body];
+        SolverBody moving;
+        moving.vx = motion.velocity.x;
+        moving.vy = motion.velocity.y;
+        moving.w = motion.angularVelocity;
+        m_bodies[place] = moving;
+        Source source;
+        source.pose = motion.pose();
+        source.velocity = motion.velocity;
+        source.angularVelocity = motion.angularVelocity;
+        source.inverseMass = info.inverseMass;
+        source.inverseInertia = info.inverseInertia;
+        if (info.dynamic()) {
+            source.acceleration = info.gravityScale * world.gravity;
+            if (!world.forces.empty()) {
+                source.acceleration += info.inverseMass * world.forces[body].force;
+                source.angularAcceleration = info.inverseInertia * world.forces[body].torque;
+            }
+            // Under a constant force a body moves with the mean of the velocities at both ends of
+            // the substep. A body at rest on a contact must not: it would hover by h²g/2. Joints
+            // have no such rest to lose, and a pendulum's period gets twice as exact (1.2e-4 →
+            // 6e-5 at n = 4).
+            if (plan.hasContact[place] == 0) source.lag = (0.5f * h) * source.acceleration;
+            source.linearFactor = 1.0f / (1.0f + h * info.linearDamping);
+            source.angularFactor = 1.0f / (1.0f + h * info.angularDamping);
+        }
+        m_sources[place] = source;
+    }
+}
+
+void SoftStep::prepareJoints(const Plan& plan, const SolverWorld& world, Range joints) {
+    const float h = world.stepSeconds / static_cast<float>(world.substeps);
+    for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
+        const std::uint32_t place = plan.jointOrder[i];
+        const JointInfo& info = world.joints[place];
+        ConstraintBodies at = plan.jointPlaces[i];
+        if (info.kind() == JointKind::Mouse) at.a = fixedWorld;
+        // A static body has no solver place: its pose comes from the world.
+        const ConstraintPlaces& bodies = world.jointBodies[place];
+        m_joints[i] =
+            prepareJoint(info, world.jointImpulses[place], place, world.motions[bodies.a].pose(),
+                         world.motions[bodies.b].pose(), h);
+        JointRow& row = m_joints[i];
+        row.bodyA = at.a;
+        row.bodyB = at.b;
+        const Source& a = m_sources[static_cast<std::size_t>(readPlace(at.a))];
+        const Source& b = m_sources[static_cast<std::size_t>(readPlace(at.b))];
+        row.mA = a.inverseMass;
+        row.iA = a.inverseInertia;
+        row.mB = b.inverseMass;
+        row.iB = b.inverseInertia;
+    }
+}
+
+void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
+                             ContactFeatures& features) {
+    for (std::uint32_t block = blocks.begin; block < blocks.end; ++block) {
+        ContactBlock& rows = m_blocks[block];
+        for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
+            const std::uint32_t at = block * blockLanes + lane;
+            const std::uint32_t place = plan.contactOfLane[at];
+            rows.bodyA[lane] = plan.lanePlaces[at].a;
+            rows.bodyB[lane] = plan.lanePlaces[at].b;
+            if (place == none) {
+                clearLane(rows, lane);
+                continue;
+            }
+            const Contact& contact = world.contacts[place];
+            prepareLane(contact, plan.lanePlaces[at], world, rows, lane);
+            features.friction |= contact.friction > 0.0f;
+            features.restitution |= contact.restitution > 0.0f;
+            features.tangentSpeed |= contact.tangentSpeed != 0.0f;
+            features.rolling |= contact.rollingResistance > 0.0f;
+        }
+    }
+}
+
+void SoftStep::prepareLane(const Contact& contact, const ConstraintBodies& places,
+                           const SolverWorld& world, ContactBlock& rows, std::uint32_t lane) const {
+    const Source& a = m_sources[static_cast<std::size_t>(readPlace(places.a))];
+    const Source& b = m_sources[static_cast<std::size_t>(readPlace(places.b))];
+    // All static bodies share the fixed world's place; where one is, only the world knows.
+    const Pose poseA = places.a == fixedWorld ? world.motions[contact.bodyA].pose() : a.pose;
+    const Pose poseB = places.b == fixedWorld ? world.motions[contact.bodyB].pose() : b.pose;
+    const float mA = a.inverseMass, iA = a.inverseInertia;
+    const float mB = b.inverseMass, iB = b.inverseInertia;
+    const Vec2 n = contact.normal;
+    rows.inverseMassA[lane] = mA;
+    rows.inverseInertiaA[lane] = iA;
+    rows.inverseMassB[lane] = mB;
+    rows.inverseInertiaB[lane] = iB;
+    rows.normalX[lane] = n.x;
+    rows.normalY[lane] = n.y;
+    rows.friction[lane] = contact.friction;
+    rows.restitution[lane] = contact.restitution;
+    rows.tangentSpeed[lane] = contact.tangentSpeed;
+    rows.rollingResistance[lane] = contact.rollingResistance;
+    rows.rollingMass[lane] = inverseOf(iA + iB);
+    rows.rollingImpulse[lane] = contact.state.rollingImpulse;
+    const Vec2 centers = poseB.p - poseA.p;
+    const Rotation turnedA = relative(contact.rotationA, poseA.q);
+    const Rotation turnedB = relative(contact.rotationB, poseB.q);
+    for (std::size_t i = 0; i < 2; ++i) {
+        ContactPointRows& p = rows.points[i];
+        if (i >= contact.pointCount) {
+            clearPoint(p, lane);
+            continue;
+        }
+        const Vec2 rA = contact.anchorA[i];
+        const Vec2 rB = contact.anchorB[i];
+        p.anchorAx[lane] = rA.x;
+        p.anchorAy[lane] = rA.y;
+        p.anchorBx[lane] = rB.x;
+        p.anchorBy[lane] = rB.y;
+        // How far the anchors have come apart since the manifold was made, when they met; the pass
+        // adds n·(rB − rA) and how they move from here on.
+        const Vec2 apart = centers + (rotate(turnedB, rB) - rotate(turnedA, rA));
+        p.separation[lane] = contact.separation[i] + dot(n, apart) - dot(n, rB - rA);
+        const float rnA = cross(rA, n), rnB = cross(rB, n);
+        const float rtA = dot(rA, n), rtB = dot(rB, n);  // r × t = −r·n for t = (ny, −nx)
+        p.normalMass[lane] = inverseOf(mA + mB + iA * rnA * rnA + iB * rnB * rnB);
+        p.tangentMass[lane] = inverseOf(mA + mB + iA * rtA * rtA + iB * rtB * rtB);
+        p.normalImpulse[lane] = contact.state.normalImpulse[i];
+        p.tangentImpulse[lane] = contact.state.tangentImpulse[i];
+        p.maxNormalImpulse[lane] = 0.0f;
+        const Vec2 approach = (b.velocity + crossScalar(b.angularVelocity, rB)) -
+                              (a.velocity + crossScalar(a.angularVelocity, rA));
+        p.approach[lane] = dot(approach, n);
+    }
+}
+
+void SoftStep::storeBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
+                           std::vector<ContactHit>& hits) const {
+    for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
+        const std::uint32_t place = plan.contactOfLane[at];
+        if (place == none) continue;
+        const ContactBlock& rows = m_blocks[at / blockLanes];
+        const std::uint32_t lane = at % blockLanes;
+        Contact& contact = world.contacts[place];
+        contact.state.rollingImpulse = finiteOrZero(rows.rollingImpulse[lane]);
+        ContactHit hit;
+        for (std::size_t i = 0; i < contact.pointCount; ++i) {
+            const ContactPointRows& p = rows.points[i];
+            contact.state.normalImpulse[i] = finiteOrZero(p.normalImpulse[lane]);
+            contact.state.tangentImpulse[i] = finiteOrZero(p.tangentImpulse[lane]);
+            const float approach = -p.approach[lane];
+            if (!(p.maxNormalImpulse[lane] > 0.0f && approach > hitSpeed)) continue;
+            if (!(approach > hit.approach)) continue;
+            hit.shapeA = contact.state.shapeA;
+            hit.shapeB = contact.state.shapeB;
+            hit.point = world.motions[contact.bodyA].position + contact.anchorA[i];
+            hit.normal = contact.normal;
+            hit.approach = approach;
+        }
+        if (hit.approach > 0.0f) hits.push_back(hit);
+    }
+}
+
+void SoftStep::storeJoints(const SolverWorld& world, Range joints) const {
+    for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
+        world.jointImpulses[m_joints[i].joint] = storedImpulses(m_joints[i]);
+    }
+}
+
+}  // namespace huestep
