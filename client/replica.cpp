@@ -249,8 +249,10 @@ void Replica::reportDifference(const World& theirs) {
         const std::optional<Difference> difference = firstDifference(*m_world, theirs);
         if (difference) {
             report.body = difference->body;
-            report.field = shortened(difference->name + " " + difference->field);
-            if (difference->record == "body") report.field = shortened(difference->field);
+            // A body's own fields go by their names; others say what of the body's it is.
+            const bool own = difference->record == "body" || difference->record == "motion";
+            report.field =
+                shortened(own ? difference->field : difference->name + " " + difference->field);
             report.here = shortened(difference->left);
             report.there = shortened(difference->right);
         } else {
