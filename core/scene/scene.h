@@ -30,7 +30,9 @@ struct Material {
     float friction = 0.6f;           ///< Coulomb's μ, [0, 100]
     float restitution = 0.0f;        ///< Newton's e, [0, 1]; applies above 1 m/s of approach
     float rollingResistance = 0.0f;  ///< rolling moment / (normal force · radius), [0, 100]
-    float tangentSpeed = 0.0f;       ///< m/s, speed of a conveyor belt's surface, ±10,000
+    /// m/s, ±10,000: a conveyor belt's surface runs counter-clockwise around the shape, as that of
+    /// a wheel does that turns with positive angular velocity.
+    float tangentSpeed = 0.0f;
     friend bool operator==(const Material&, const Material&) = default;
 };
 

@@ -32,7 +32,7 @@ void addPlatforms(Scene& scene) {
     add(scene, bumper);
     BodyDef belt = bodyOf(BodyType::Static, {15.5f, 0.0f},
                           ShapeDef::capsule({-2.5f, 0.1f}, {4.0f, 0.1f}, 0.15f));
-    belt.shapes[0].material.tangentSpeed = -2.0f;
+    belt.shapes[0].material.tangentSpeed = 2.0f;
     belt.shapes[0].material.friction = 0.9f;
     add(scene, belt);
     BodyDef windmill;

@@ -125,7 +125,7 @@ Status Box2d3Engine::addShape(const ShapeDef& shape, b2BodyId body, const std::s
     def.material.friction = shape.material.friction;
     def.material.restitution = shape.material.restitution;
     def.material.rollingResistance = shape.material.rollingResistance;
-    def.material.tangentSpeed = shape.material.tangentSpeed;
+    def.material.tangentSpeed = -shape.material.tangentSpeed;  // there the belt runs clockwise
     def.filter = {shape.filter.category, shape.filter.mask, shape.filter.group};
     std::array<b2Vec2, maxPolygonVertices> points;
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = toB2(shape.vertices[i]);
