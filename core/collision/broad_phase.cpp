@@ -47,7 +47,7 @@ std::uint64_t keyOf(const Bounds& box) {
 /// A little room all around, and the way the shape will go in the next ticks.
 Bounds fattened(const Bounds& tight, Vec2 travel) {
     const float size = maxOf(tight.high.x - tight.low.x, tight.high.y - tight.low.y);
-    const float margin = minOf(0.1f, 0.02f + 0.08f * size);
+    const float margin = minOf(0.1f, 0.01f + 0.05f * size);
     Bounds fat = grown(tight, margin);
     (travel.x < 0 ? fat.low.x : fat.high.x) += travel.x;
     (travel.y < 0 ? fat.low.y : fat.high.y) += travel.y;
