@@ -138,11 +138,11 @@ Result<T> readMessage(std::string_view name, std::span<const std::byte> bytes, R
     try {
         // Cap'n Proto wants words where the machine can load them. Copying is cheaper than asking
         // every transport to align what it receives.
-        std::vector<::capnp::word> copy;
+        std::vector<std::uint64_t> copy;
         const void* at = bytes.data();
         if (reinterpret_cast<std::uintptr_t>(at) % alignof(::capnp::word) != 0) {
             copy.resize(words);
-            std::memcpy(static_cast<void*>(copy.data()), at, bytes.size());
+            std::memcpy(copy.data(), at, bytes.size());
             at = copy.data();
         }
         const ::kj::ArrayPtr<const ::capnp::word> segment(static_cast<const ::capnp::word*>(at),

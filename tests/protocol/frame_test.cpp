@@ -121,7 +121,7 @@ TEST(FrameSplitter, HoldsOnlyWhatIsMissingItsEnd) {
         ASSERT_TRUE(out.empty());
     }
     ASSERT_TRUE(splitter.feed(std::span(frame).last(1), out).ok());
-    EXPECT_EQ(out, std::vector<Message>{Ping(1, false)});
+    EXPECT_EQ(out, (std::vector<Message>{Ping{1, false}}));
 }
 
 TEST(FrameSplitter, KeepsMessagesBeforeAnErrorAndThenStaysFailed) {
