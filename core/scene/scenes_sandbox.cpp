@@ -37,8 +37,9 @@ void addPlatforms(Scene& scene) {
     add(scene, belt);
     BodyDef windmill;
     windmill.type = BodyType::Kinematic;
-    windmill.position = {9.5f, 13.5f};
-    windmill.angularVelocity = -0.8f;
+    windmill.position = {10.7f, 12.2f};
+    windmill.rotation = rotationOf(0.785f);
+    windmill.angularVelocity = 0.8f;  // its right side lifts: nothing is pressed on the ledge
     windmill.shapes = {ShapeDef::box(2.0f, 0.1f, {}, {}, 0.05f),
                        ShapeDef::box(0.1f, 2.0f, {}, {}, 0.05f)};
     add(scene, windmill);
@@ -127,7 +128,7 @@ void addPiles(Scene& scene) {
         const std::uint32_t heap = i % 3;
         const std::uint32_t level = i / 3;
         const Vec2 base = heap == 0   ? Vec2{-18.0f, 0.7f}
-                          : heap == 1 ? Vec2{12.2f, 10.0f}
+                          : heap == 1 ? Vec2{12.9f, 10.0f}
                                       : Vec2{-3.5f, 14.0f};
         const Vec2 position =
             base + Vec2{0.9f * static_cast<float>(level % 6) + sequence.between(-0.05f, 0.05f),
