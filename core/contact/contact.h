@@ -27,8 +27,6 @@ struct Contact {
     float roundness = 0;  ///< m: the larger radius
     std::uint8_t pointCount = 0;  ///< 0: not touching
     bool made = false;            ///< the manifold below is that of `state.relative`
-    bool touched = false;         ///< touching before this step
-    bool spare = false;
 
     // The manifold at `state.relative`, turned into the world as body A was then. Anchors are from
     // the two centres of mass; they coincided when the manifold was made.

@@ -82,7 +82,7 @@ namespace {
 std::uint8_t activityOf(const BodyInfo& info, const BodyMotion& motion) {
     switch (info.type()) {
         case BodyType::Dynamic:
-            return motion.asleep() ? restsNow : movesNow;
+            return motion.asleep() ? sleepsNow : movesNow;
         case BodyType::Kinematic:
             return motion.velocity == Vec2{} && motion.angularVelocity == 0.0f ? restsNow
                                                                                : drivesNow;
@@ -101,6 +101,7 @@ void World::Data::findPairs(Executor* executor) {
     acc.tight.resize(shapes.hulls.size());
     acc.travel.resize(shapes.hulls.size());
     activity.resize(state.bodies.size());
+    anyAsleep = false;
 
     // Bodies that may have moved since the last look: those that take part now or did last time.
     std::vector<std::uint32_t> bodies = std::move(acc.lastActive);
@@ -110,8 +111,9 @@ void World::Data::findPairs(Executor* executor) {
     for (const std::uint32_t body : bodies) known[body] = 1;
     for (std::uint32_t body = 0; body < state.bodies.size(); ++body) {
         activity[body] = activityOf(state.bodies[body], state.motions[body]);
-        if (activity[body] != restsNow) acc.lastActive.push_back(body);
-        if (fresh || (activity[body] != restsNow && !known[body])) bodies.push_back(body);
+        anyAsleep = anyAsleep || activity[body] == sleepsNow;
+        if (isActive(activity[body])) acc.lastActive.push_back(body);
+        if (fresh || (isActive(activity[body]) && !known[body])) bodies.push_back(body);
     }
     std::sort(bodies.begin(), bodies.end());
 
@@ -193,7 +195,7 @@ void World::Data::layOutContacts() {
              ++from) {
             if (from->pointCount == 0) continue;
             // A contact at rest stays as it is, whatever the bounds say: nobody looks at it.
-            if (activity[from->bodyA] == restsNow && activity[from->bodyB] == restsNow) {
+            if (!isActive(activity[from->bodyA] | activity[from->bodyB])) {
                 acc.contacts.push_back(*from);
             } else {
                 events.ends.push_back({from->state.shapeA, from->state.shapeB});
@@ -213,57 +215,65 @@ void World::Data::layOutContacts() {
 
 void World::Data::collideAll(Executor* executor) {
     const NarrowPhaseInput in = narrowPhaseInput();
-    const auto count = accelerators.contacts.size();
-    std::vector<std::uint8_t> looked(count, 0);
-    struct Tally {
+    const std::size_t count = accelerators.contacts.size();
+    // What one block of contacts found: how many, which began or ended, and whether any sleeper is
+    // touched by what is awake.
+    struct Findings {
         std::uint32_t pairs = 0, recycled = 0;
+        std::vector<std::uint32_t> changed;
+        bool disturbs = false;
     };
+    std::vector<std::uint8_t> looked(anyAsleep ? count : 0, 0);
+    bool woke = false;
     do {
-        std::vector<Tally> tallies((count + contactGrain - 1) / contactGrain);
+        auto findings = perBlock<Findings>(count, contactGrain);
         overRange(executor, count, contactGrain, [&](std::uint32_t begin, std::uint32_t end) {
-            Tally& tally = tallies[begin / contactGrain];
+            Findings& mine = findings[begin / contactGrain];
             for (std::uint32_t i = begin; i < end; ++i) {
                 Contact& contact = accelerators.contacts[i];
-                if ((activity[contact.bodyA] | activity[contact.bodyB]) == restsNow) continue;
-                if (looked[i]) continue;
-                looked[i] = 1;
-                contact.touched = contact.pointCount > 0;
+                const auto both =
+                    static_cast<std::uint8_t>(activity[contact.bodyA] | activity[contact.bodyB]);
+                if (!isActive(both)) continue;
+                if (anyAsleep) {
+                    if (looked[i]) continue;
+                    looked[i] = 1;
+                }
+                const bool touched = contact.pointCount > 0;
                 const ContactUpdate update = updateContact(contact, in);
-                tally.pairs += contact.pointCount > 0 || update != ContactUpdate::Apart;
-                tally.recycled += update == ContactUpdate::Recycled;
+                const bool touching = contact.pointCount > 0;
+                mine.pairs += update != ContactUpdate::Apart;
+                mine.recycled += update == ContactUpdate::Recycled;
+                if (touched != touching) mine.changed.push_back(i);
+                mine.disturbs |= touching && (both & sleepsNow) != 0;
             }
         });
-        for (const Tally& tally : tallies) {
-            report.pairs += tally.pairs;
-            report.recycled += tally.recycled;
+        bool disturbs = false;
+        for (const Findings& f : findings) {
+            report.pairs += f.pairs;
+            report.recycled += f.recycled;
+            disturbs |= f.disturbs;
+            for (const std::uint32_t i : f.changed) {
+                const Contact& contact = accelerators.contacts[i];
+                (contact.pointCount > 0 ? events.begins : events.ends)
+                    .push_back({contact.state.shapeA, contact.state.shapeB});
+            }
         }
-    } while (wakeTouched());
-
-    for (std::size_t i = 0; i < count; ++i) {
-        const Contact& contact = accelerators.contacts[i];
-        const bool touching = contact.pointCount > 0;
-        report.contacts += touching;
-        if (!looked[i] || touching == contact.touched) continue;
-        (touching ? events.begins : events.ends)
-            .push_back({contact.state.shapeA, contact.state.shapeB});
-    }
+        woke = anyAsleep && wakeTouched(disturbs);
+    } while (woke);
+    std::sort(events.begins.begin(), events.begins.end(), keyBefore);
     std::sort(events.ends.begin(), events.ends.end(), keyBefore);
 }
 
-/// Wakes every sleeping island that something active touches or is jointed to. Returns whether any
-/// body woke: its contacts have to be looked at then.
-bool World::Data::wakeTouched() {
+/// Wakes every sleeping island that something active touches (a contact has been found that does,
+/// if `contactDisturbs`) or is jointed to. Returns whether any body woke: its contacts have to be
+/// looked at then.
+bool World::Data::wakeTouched(bool contactDisturbs) {
     const Shapes& shapes = accelerators.shapes;
-    const auto asleep = [&](std::uint32_t body) {
-        return state.bodies[body].dynamic() && state.motions[body].asleep();
-    };
     const auto disturbs = [&](std::uint32_t a, std::uint32_t b) {
-        return (activity[a] != restsNow && asleep(b)) || (activity[b] != restsNow && asleep(a));
+        return (isActive(activity[a]) && activity[b] == sleepsNow) ||
+               (isActive(activity[b]) && activity[a] == sleepsNow);
     };
-    bool any = false;
-    for (const Contact& c : accelerators.contacts) {
-        any = any || (c.pointCount > 0 && disturbs(c.bodyA, c.bodyB));
-    }
+    bool any = contactDisturbs;
     for (const ConstraintPlaces& j : shapes.jointBodies) any = any || disturbs(j.a, j.b);
     if (!any) return false;
 
@@ -286,7 +296,7 @@ bool World::Data::wakeTouched() {
     }
     bool woke = false;
     for (std::uint32_t body = 0; body < dynamic.size(); ++body) {
-        if (!dynamic[body] || !wakes[sets.find(body)] || !asleep(body)) continue;
+        if (activity[body] != sleepsNow || !wakes[sets.find(body)]) continue;
         wake(body);
         activity[body] = movesNow;
         accelerators.lastActive.push_back(body);
@@ -307,9 +317,9 @@ void World::Data::updatePlan() {
     const auto jointLinks = static_cast<std::uint32_t>(links.size());
     for (std::uint32_t i = 0; i < acc.contacts.size(); ++i) {
         const Contact& c = acc.contacts[i];
-        if (c.pointCount > 0 && (moves(c.bodyA) || moves(c.bodyB))) {
-            links.push_back({c.bodyA, c.bodyB, i});
-        }
+        if (c.pointCount == 0) continue;
+        ++report.contacts;
+        if (moves(c.bodyA) || moves(c.bodyB)) links.push_back({c.bodyA, c.bodyB, i});
     }
     std::vector<std::uint32_t> awake;
     std::vector<std::uint8_t> moving(state.bodies.size(), 0);

@@ -44,8 +44,11 @@ struct Accelerators {
     SoftStep solver;
 };
 
-/// Whether a body takes part in a step.
-enum : std::uint8_t { restsNow = 0, movesNow = 1, drivesNow = 2 };  // drives: kinematic, moving
+/// How a body takes part in a step: not at all; moved by it; a kinematic body that moves; asleep.
+enum : std::uint8_t { restsNow = 0, movesNow = 1, drivesNow = 2, sleepsNow = 4 };
+constexpr bool isActive(std::uint8_t activity) {
+    return (activity & (movesNow | drivesNow)) != 0;
+}
 
 struct World::Data {
     // The step works on `accelerators.contacts`. `state.contacts` is current only while
@@ -60,7 +63,8 @@ struct World::Data {
     // Of one step.
     std::vector<BodyForce> forces;       // by body; empty: none
     std::vector<std::uint8_t> activity;  // by body
-    std::vector<std::uint8_t> removed;   // by body; empty: none
+    bool anyAsleep = false;
+    std::vector<std::uint8_t> removed;  // by body; empty: none
     std::vector<std::uint8_t> removedJoints;
 
     // access.cpp
@@ -88,7 +92,7 @@ struct World::Data {
     void layOutContacts();
     void collideAll(Executor* executor);
     void updatePlan();
-    bool wakeTouched();
+    bool wakeTouched(bool contactDisturbs);
     void settleIslands();
 
     [[nodiscard]] NarrowPhaseInput narrowPhaseInput() const {
