@@ -15,8 +15,10 @@ namespace {
 
 // A barrier costs about 100 ns among running threads and several µs through the kernel. So a
 // worker looks a while before it sleeps, unless there are more workers than cores: then whoever
-// looks keeps the one he waits for from running.
-constexpr int looksBeforeSleep = 4000;
+// looks keeps the one he waits for from running. Few looks, because other programs want the cores
+// too: with twice as many runnable threads as cores, 4,000 looks made two workers seven times
+// slower than one, 200 made them about as fast.
+constexpr int looksBeforeSleep = 200;
 
 void pauseBriefly() {
 #if defined(__x86_64__)
