@@ -343,6 +343,8 @@ void World::Data::applyCommands(std::span<const Command> commands) {
         }
         events.commands.push_back(applier.apply(command));
     }
+    // A body that came after a force of the same tick has none.
+    if (!forces.empty()) forces.resize(state.bodies.size());
     removeMarked();
 }
 

@@ -1,0 +1,204 @@
+// Whole runs against hashes that are kept: any change of any bit of any tick shows here.
+//
+// Where results change on purpose, mint again and say why; the words end up in the file:
+//   HUESTEP_MINT="why the results changed" build/bin/test_determinism --gtest_filter='*Golden*'
+// (HUESTEP_MINT=1 mints without words.) A missing golden is a failure.
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "tests/determinism/script.h"
+#include "tests/determinism/together.h"
+
+namespace huestep::test {
+namespace {
+
+struct GoldenRun {
+    std::string scene;
+    std::string guards;  ///< why this golden exists
+    std::vector<std::uint64_t> ticks;
+    std::uint64_t debugTicks;  ///< builds with asserts stop here: their ticks are shared
+    CommandsOf commandsOf = silence;
+    bool watchSleep = false;  ///< the tick in which everything is asleep is golden too
+};
+
+void PrintTo(const GoldenRun& run, std::ostream* out) {
+    *out << run.scene;
+}
+
+std::vector<GoldenRun> goldenRuns() {
+    return {
+        {"pyramid:base=20", "one small island of contacts alone", {0, 1, 60, 240}, 240},
+        {"pyramid:base=34",
+         "one island above a batch: colours across threads, barriers",
+         {1, 40, 120},
+         40},
+        {"many_pyramids:rows=5,columns=5,base=8",
+         "many equal islands packed into batches",
+         {1, 40, 120},
+         40},
+        {"joint_grid:n=20", "joints alone, under the size that uses threads", {1, 60, 240}, 240},
+        {"joint_grid:n=30", "joints alone, one giant island", {1, 40, 120}, 40},
+        {"tumbler:count=24", "contacts that come and go, a motor", {1, 60, 120, 200}, 60},
+        {"small", "a scene below every threshold; falls asleep", {1, 60, 240, 600}, 600},
+        {"hinges",
+         "contacts, limits, springs; the tick at which all sleep",
+         {1, 60, 240, 600},
+         600,
+         silence,
+         true},
+        {"mixed", "every shape, joint, filter and kind of body", {0, 1, 60, 240, 600}, 600},
+        {"sandbox",
+         "players who join, push, grab, spawn, remove and leave",
+         {1, 60, 240, 420},
+         240,
+         playersScript},
+    };
+}
+
+std::string fileName() {
+    return std::string(HUESTEP_SOURCE_DIR) + "/tests/determinism/goldens.txt";
+}
+
+struct Golden {
+    std::string minted;                         ///< why it was minted last
+    std::map<std::string, std::string> hashes;  ///< "tick 60" or "asleep" → values
+};
+
+/// Reads the file: `scene NAME`, then `guards …`, `minted …` and lines `KEY = VALUES`.
+std::map<std::string, Golden> readGoldens() {
+    std::map<std::string, Golden> all;
+    std::ifstream file(fileName());
+    std::string line, scene;
+    while (std::getline(file, line)) {
+        const auto rest = [&](const std::string& word) -> std::optional<std::string> {
+            if (line.rfind(word, 0) != 0) return std::nullopt;
+            return line.substr(word.size());
+        };
+        if (const auto name = rest("scene ")) {
+            scene = *name;
+        } else if (const auto why = rest("  minted: ")) {
+            all[scene].minted = *why;
+        } else if (const auto at = line.find(" = "); at != std::string::npos && line[0] == ' ') {
+            all[scene].hashes[line.substr(2, at - 2)] = line.substr(at + 3);
+        }
+    }
+    return all;
+}
+
+void writeGoldens(const std::map<std::string, Golden>& all) {
+    std::ofstream file(fileName());
+    file << "# Full root and motion root of whole runs, the same for every machine, compiler,\n"
+            "# thread count and SIMD width. Read and written by goldens_test.cpp; to mint again:\n"
+            "#   HUESTEP_MINT=\"why the results changed\" build/bin/test_determinism "
+            "--gtest_filter='*Golden*'\n";
+    for (const GoldenRun& run : goldenRuns()) {
+        const auto golden = all.find(run.scene);
+        if (golden == all.end()) continue;
+        file << "\nscene " << run.scene << "\n  guards: " << run.guards
+             << "\n  minted: " << golden->second.minted << "\n";
+        for (const std::uint64_t tick : run.ticks) {
+            const std::string key = "tick " + std::to_string(tick);
+            const auto hash = golden->second.hashes.find(key);
+            if (hash != golden->second.hashes.end())
+                file << "  " << key << " = " << hash->second << "\n";
+        }
+        const auto asleep = golden->second.hashes.find("asleep from tick");
+        if (asleep != golden->second.hashes.end()) {
+            file << "  asleep from tick = " << asleep->second << "\n";
+        }
+    }
+}
+
+std::string rootsOf(const World& world) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%016llx %016llx",
+                  static_cast<unsigned long long>(world.fullRoot()),
+                  static_cast<unsigned long long>(world.motionRoot()));
+    return text;
+}
+
+bool allAsleep(const World& world) {
+    for (std::size_t i = 0; i < world.bodies().size(); ++i) {
+        if (world.bodies()[i].dynamic() && !world.motions()[i].asleep()) return false;
+    }
+    return true;
+}
+
+class GoldenHashes : public testing::TestWithParam<GoldenRun> {};
+
+TEST_P(GoldenHashes, AreThoseOfEveryConfiguration) {
+    const GoldenRun& golden = GetParam();
+    const char* mint = std::getenv("HUESTEP_MINT");
+#ifdef NDEBUG
+    const bool whole = true;
+#else
+    const bool whole = mint != nullptr;
+#endif
+    const std::uint64_t last = whole ? golden.ticks.back() : golden.debugTicks;
+    std::map<std::string, std::string> found;
+    std::optional<std::uint64_t> asleep;
+    runTogether(worldOf(golden.scene), last, golden.commandsOf, 1, [&](const World& world) {
+        const bool kept = std::count(golden.ticks.begin(), golden.ticks.end(), world.tick()) != 0;
+        if (kept) found["tick " + std::to_string(world.tick())] = rootsOf(world);
+        if (golden.watchSleep && !asleep && world.tick() > 0 && allAsleep(world)) {
+            asleep = world.tick();
+        }
+    });
+    if (HasFatalFailure()) return;
+    if (golden.watchSleep) {
+        ASSERT_TRUE(asleep) << "nothing slept within " << last << " ticks";
+        found["asleep from tick"] = std::to_string(*asleep);
+    }
+    std::map<std::string, Golden> all = readGoldens();
+    if (mint != nullptr) {
+        Golden& kept = all[golden.scene];
+        if (kept.hashes != found) {
+            kept.minted = std::string(mint) == "1" ? "without words" : mint;
+        }
+        kept.hashes = found;
+        writeGoldens(all);
+        return;
+    }
+    for (const auto& [key, hash] : found) {
+        const auto& kept = all[golden.scene].hashes;
+        ASSERT_TRUE(kept.contains(key))
+            << fileName() << " has no \"" << key << "\" of " << golden.scene;
+        EXPECT_EQ(hash, kept.at(key)) << golden.scene << ", " << key;
+    }
+}
+
+std::string nameOfRun(const testing::TestParamInfo<GoldenRun>& info) {
+    std::string name = info.param.scene;
+    for (char& c : name) {
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    }
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Runs, GoldenHashes, testing::ValuesIn(goldenRuns()), nameOfRun);
+
+TEST(GoldenRuns, ReachThreadsBarriersAndBatches) {
+    // If thresholds move, the scenes above have to grow with them, or they guard nothing.
+    Executor executor(2);
+    const auto reportAfter = [&](const std::string& scene) {
+        World world = worldOf(scene);
+        run(world, 2, {&executor, Simd::Auto, nullptr});
+        return world.report();
+    };
+    const StepReport giant = reportAfter("pyramid:base=34");
+    EXPECT_EQ(giant.batches, 1u);
+    EXPECT_GT(giant.contacts, 1100u) << "one island above a batch";
+    const StepReport many = reportAfter("many_pyramids:rows=5,columns=5,base=8");
+    EXPECT_GT(many.batches, 1u);
+    EXPECT_GT(many.islands, many.batches) << "several islands a batch";
+    EXPECT_GT(reportAfter("joint_grid:n=30").joints, 1100u);
+}
+
+}  // namespace
+}  // namespace huestep::test
