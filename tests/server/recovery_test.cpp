@@ -1,0 +1,275 @@
+// A session that comes back from its folder, and journals that must not be believed.
+#include "server/recovery.h"
+
+#include <gtest/gtest.h>
+
+#include "core/state/hash.h"
+#include "desk.h"
+#include "protocol/memory_store.h"
+#include "server/log_writer.h"
+
+namespace huestep::server {
+namespace {
+
+using protocol::MemoryStore;
+using test::deskPrint;
+using test::deskScene;
+
+struct Life {
+    Life(MemoryStore& disk, Limits given, const Scene* scene)
+        : store(disk), limits(given), request{"play", deskPrint, scene, ResumeKey{4, 2}, {}} {}
+
+    Status open() {
+        Result<RecoveredSession> recovered = recoverSession(store, request);
+        if (!recovered) return recovered.error();
+        created = recovered->created;
+        Result<protocol::JournalWriter> opened = protocol::JournalWriter::open(
+            store, recovered->identity, recovered->contents, recovered->start.world.tick());
+        if (!opened) return opened.error();
+        writer.emplace(std::move(*opened));
+        session.emplace(std::move(recovered->start), limits, second);
+        return Done{};
+    }
+    void play(int ticks, bool save = true) {
+        for (int i = 0; i < ticks; ++i) {
+            if (session->seats().taken() == 0 && session->tick() == 3) session->seats().join();
+            if (session->seats().has(1)) {
+                session->queue(1, {0, session->lastSequence(1) + 1,
+                                   ApplyImpulse{3, {0.1f, 0.8f}, {1.0f, 2.0f}}});
+            }
+            const ClosedTick closed = session->closeTick(second, {});
+            if (!save) continue;
+            std::string warning;
+            ASSERT_TRUE(commitBatch(*writer, {&closed, 1}, warning).ok());
+            EXPECT_EQ(warning, "");
+            session->committed(closed.commits);
+        }
+    }
+
+    MemoryStore& store;
+    Limits limits;
+    RecoveryRequest request;
+    bool created = false;
+    std::optional<protocol::JournalWriter> writer;
+    std::optional<Session> session;
+};
+
+std::string newest(MemoryStore& disk, const std::string& prefix) {
+    std::string out;
+    const std::vector<std::string> names = *disk.list();
+    for (const std::string& name : names) {
+        if (name.rfind(prefix, 0) == 0) out = name;
+    }
+    return out;
+}
+
+Limits often() {
+    Limits limits;
+    limits.journalSnapshotTicks = 50;
+    limits.segmentTicks = 100;
+    return limits;
+}
+
+TEST(Recovery, AnEmptyFolderStartsFromTheScene) {
+    MemoryStore disk;
+    const Scene scene = deskScene();
+    Life life(disk, {}, &scene);
+    ASSERT_TRUE(life.open().ok());
+    EXPECT_TRUE(life.created);
+    EXPECT_EQ(life.session->tick(), 0u);
+    EXPECT_EQ(life.session->epoch(), 1u);
+    EXPECT_EQ(life.session->world().fullRoot(), World::create(scene)->fullRoot());
+}
+
+TEST(Recovery, WithoutASceneThereIsNothingToStartFrom) {
+    MemoryStore disk;
+    Life life(disk, {}, nullptr);
+    EXPECT_FALSE(life.open().ok());
+}
+
+TEST(Recovery, ASessionGoesOnBitForBitWhereverItsJournalEnds) {
+    const Scene scene = deskScene();
+    for (const int ticks : {0, 1, 49, 50, 51, 99, 100, 101, 230}) {
+        MemoryStore disk;
+        Life before(disk, often(), &scene);
+        ASSERT_TRUE(before.open().ok());
+        before.play(ticks);
+        const std::uint64_t root = before.session->world().fullRoot();
+        Life after(disk, often(), nullptr);  // the folder has its own scene
+        const Status opened = after.open();
+        ASSERT_TRUE(opened.ok()) << ticks << ": " << opened.error().message;
+        EXPECT_FALSE(after.created);
+        EXPECT_EQ(after.session->tick(), static_cast<std::uint64_t>(ticks));
+        EXPECT_EQ(after.session->world().fullRoot(), root);
+        EXPECT_EQ(after.session->epoch(), 2u);
+        // And both futures are the same.
+        before.play(20, false);
+        after.play(20);
+        EXPECT_EQ(after.session->world().fullRoot(), before.session->world().fullRoot());
+    }
+}
+
+TEST(Recovery, SeveralStartsAtOneTickCountTheirEpochs) {
+    MemoryStore disk;
+    const Scene scene = deskScene();
+    for (std::uint32_t epoch = 1; epoch <= 4; ++epoch) {
+        Life life(disk, {}, &scene);
+        const Status opened = life.open();
+        ASSERT_TRUE(opened.ok()) << opened.error().message;
+        EXPECT_EQ(life.session->epoch(), epoch);
+    }
+}
+
+TEST(Recovery, TokensOfBeforeAreGoodAfter) {
+    MemoryStore disk;
+    const Scene scene = deskScene();
+    Life before(disk, {}, &scene);
+    ASSERT_TRUE(before.open().ok());
+    before.play(10);
+    const protocol::ResumeToken token = before.session->seats().issue(1);
+    Life after(disk, {}, &scene);
+    after.request.freshKey = ResumeKey{7, 7, 7};  // not taken: the folder has a key
+    ASSERT_TRUE(after.open().ok());
+    EXPECT_EQ(*after.session->seats().resume(token, second), 1u);
+}
+
+TEST(Recovery, AnotherBuildsJournalIsRefused) {
+    MemoryStore disk;
+    const Scene scene = deskScene();
+    Life before(disk, {}, &scene);
+    ASSERT_TRUE(before.open().ok());
+    before.play(5);
+    Life after(disk, {}, &scene);
+    after.request.fingerprint.selfTest = 12;
+    const Status opened = after.open();
+    ASSERT_FALSE(opened.ok());
+    EXPECT_NE(opened.error().message.find("self-test"), std::string::npos);
+}
+
+TEST(Recovery, AFrameThatDoesNotFitItsWorldIsRefusedByTick) {
+    // A journal that is whole, but whose scene is another: its chain cannot tell, its roots can.
+    MemoryStore disk;
+    const Scene scene = deskScene();
+    Life before(disk, {}, &scene);
+    ASSERT_TRUE(before.open().ok());
+    before.play(20);
+    Scene other = scene;
+    other.gravity.y = -9.0f;
+    MemoryStore elsewhere;
+    Life stranger(elsewhere, {}, &other);
+    ASSERT_TRUE(stranger.open().ok());
+    disk.bytes(sceneFile) = elsewhere.bytes(sceneFile);
+    Life after(disk, {}, &scene);
+    const Status opened = after.open();
+    ASSERT_FALSE(opened.ok());
+    EXPECT_NE(opened.error().message.find("motion root of tick 1 "), std::string::npos)
+        << opened.error().message;
+}
+
+TEST(Recovery, AFlippedByteInAJournalIsRefusedWithFileAndOffset) {
+    const Scene scene = deskScene();
+    MemoryStore disk;
+    Life before(disk, {}, &scene);
+    ASSERT_TRUE(before.open().ok());
+    before.play(30);
+    const std::string segment = newest(disk, "segment-");
+    disk.bytes(segment)[disk.bytes(segment).size() / 2] ^= std::byte{1};
+    Life after(disk, {}, &scene);
+    const Status opened = after.open();
+    ASSERT_FALSE(opened.ok());
+    EXPECT_NE(opened.error().message.find(segment), std::string::npos);
+}
+
+TEST(Recovery, ADamagedSnapshotIsPassedOverForTheOneBefore) {
+    const Scene scene = deskScene();
+    MemoryStore disk;
+    Life before(disk, often(), &scene);
+    ASSERT_TRUE(before.open().ok());
+    before.play(120);
+    const std::uint64_t root = before.session->world().fullRoot();
+    std::vector<std::byte>& bytes = disk.bytes(newest(disk, "snapshot-"));
+    bytes[bytes.size() / 2] ^= std::byte{8};
+    Life after(disk, often(), &scene);
+    ASSERT_TRUE(after.open().ok());
+    EXPECT_EQ(after.session->world().fullRoot(), root);
+}
+
+TEST(Recovery, ADamagedKeyIsNamed) {
+    MemoryStore disk;
+    const Scene scene = deskScene();
+    Life before(disk, {}, &scene);
+    ASSERT_TRUE(before.open().ok());
+    disk.bytes(keyFile).pop_back();
+    Life after(disk, {}, &scene);
+    const Status opened = after.open();
+    ASSERT_FALSE(opened.ok());
+    EXPECT_NE(opened.error().message.find(keyFile), std::string::npos);
+}
+
+TEST(Recovery, NamesThatAreNoPlainFolderAreRefused) {
+    for (const char* name : {"", ".", "../up", "Upper", "a b", "a/b"}) {
+        EXPECT_FALSE(checkSessionName(name).ok()) << name;
+    }
+    EXPECT_TRUE(checkSessionName("play-2_x").ok());
+    EXPECT_FALSE(checkSessionName(std::string(65, 'a')).ok());
+}
+
+// The log writer ---------------------------------------------------------------------------------
+
+TEST(LogWriter, TellsWhatIsOnDiskAndWritesTheRestAtTheEnd) {
+    const Scene scene = deskScene();
+    auto store = std::make_unique<MemoryStore>();
+    MemoryStore& disk = *store;
+    Life life(disk, {}, &scene);
+    ASSERT_TRUE(life.open().ok());
+    LogWriter writer([] {});
+    writer.add("play", std::move(store), std::move(*life.writer));
+    for (int i = 0; i < 50; ++i) writer.write("play", life.session->closeTick(second, {}));
+    writer.write("play", life.session->finalRecord());
+    writer.finish();
+    std::uint64_t commits = 0;
+    for (const JournalNews& news : writer.takeNews()) {
+        EXPECT_FALSE(news.failure.has_value());
+        EXPECT_EQ(news.warning, "");
+        EXPECT_GE(news.commits, commits);
+        commits = news.commits;
+    }
+    EXPECT_EQ(commits, 50u);
+    const Result<protocol::JournalContents> journal = protocol::readJournal(disk);
+    ASSERT_TRUE(journal.ok());
+    EXPECT_EQ(journal->nextTick, 50u);
+    EXPECT_EQ(journal->snapshotTick, 50u);
+}
+
+TEST(LogWriter, AFullDiskFailsTheJournalForGood) {
+    const Scene scene = deskScene();
+    auto store = std::make_unique<MemoryStore>();
+    MemoryStore& disk = *store;
+    Life life(disk, {}, &scene);
+    ASSERT_TRUE(life.open().ok());
+    disk.setCapacity(disk.totalBytes() + 1'000);
+    LogWriter writer([] {});
+    writer.add("play", std::move(store), std::move(*life.writer));
+    for (int i = 0; i < 100; ++i) writer.write("play", life.session->closeTick(second, {}));
+    writer.finish();
+    int failures = 0;
+    for (const JournalNews& news : writer.takeNews()) failures += news.failure.has_value();
+    EXPECT_EQ(failures, 1);
+}
+
+TEST(LogWriter, ASnapshotThatDoesNotRestoreToItsRootIsNotWritten) {
+    const Scene scene = deskScene();
+    MemoryStore disk;
+    Life life(disk, {}, &scene);
+    ASSERT_TRUE(life.open().ok());
+    life.play(5);
+    ClosedTick record = life.session->finalRecord();
+    std::get<protocol::Checkpoint>(record.entries.back().content).motionRoot ^= 1;
+    std::string warning;
+    ASSERT_TRUE(commitBatch(*life.writer, {&record, 1}, warning).ok());
+    EXPECT_NE(warning, "");
+    EXPECT_EQ(protocol::readJournal(disk)->snapshotTick, std::nullopt);
+}
+
+}  // namespace
+}  // namespace huestep::server
