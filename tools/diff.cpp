@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "tools/command.h"
-#include "tools/files.h"
 #include "tools/interrupt.h"
 #include "tools/journal_story.h"
 #include "tools/progress.h"
@@ -12,8 +11,6 @@
 namespace huestep::tools {
 namespace {
 
-constexpr std::size_t maxSnapshotBytes = std::size_t{1} << 30;
-
 /// What was found; `what` empty: nothing.
 struct Finding {
     std::string what;  // "state", "commands", "recorded hash", "length"
@@ -21,14 +18,6 @@ struct Finding {
     std::string sentence;
     std::optional<Difference> field;
 };
-
-Result<World> readSnapshotFile(const std::string& path) {
-    const Result<std::vector<std::byte>> bytes = readFile(path, maxSnapshotBytes);
-    if (!bytes) return bytes.error();
-    Result<World> world = World::restore(*bytes);
-    if (!world) return Error{path + ": " + world.error().message};
-    return world;
-}
 
 Finding compareWorlds(const World& left, const World& right) {
     const std::optional<Difference> difference = firstDifference(left, right);
@@ -118,9 +107,9 @@ Result<Finding> find(const std::string& a, const std::string& b) {
         if (!right) return right.error();
         return compareStories(left->story, right->story);
     }
-    const Result<World> left = readSnapshotFile(a);
+    const Result<World> left = loadSnapshot(a);
     if (!left) return left.error();
-    const Result<World> right = readSnapshotFile(b);
+    const Result<World> right = loadSnapshot(b);
     if (!right) return right.error();
     return compareWorlds(*left, *right);
 }

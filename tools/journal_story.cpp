@@ -10,6 +10,7 @@
 namespace huestep::tools {
 namespace {
 
+constexpr std::size_t maxSnapshotBytes = std::size_t{1} << 30;
 const std::string sceneFile = "scene.bin";
 const std::string snapshotPrefix = "snapshot-";
 const std::string snapshotSuffix = ".snap";
@@ -96,6 +97,27 @@ Status cutAt(const std::string& folder, std::uint64_t from, std::optional<std::u
 }
 
 }  // namespace
+
+Result<World> loadSnapshot(const std::string& path) {
+    const Result<std::vector<std::byte>> bytes = readFile(path, maxSnapshotBytes);
+    if (!bytes) return bytes.error();
+    // A journal's snapshot has a wrapping of its own, which its name announces.
+    const std::filesystem::path file(path);
+    const std::optional<std::uint64_t> tick = tickOfSnapshot(file.filename().string());
+    if (!tick) {
+        Result<World> world = World::restore(*bytes);
+        if (!world) return Error{path + ": " + world.error().message};
+        return world;
+    }
+    const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+    const Result<std::unique_ptr<protocol::LogStore>> store = protocol::openFolder(folder);
+    if (!store) return store.error();
+    const Result<std::vector<std::byte>> image = protocol::readSnapshot(**store, *tick);
+    if (!image) return image.error();
+    Result<World> world = World::restore(*image);
+    if (!world) return Error{path + ": " + world.error().message};
+    return world;
+}
 
 bool looksLikeJournal(const std::string& path) {
     std::error_code wrong;

@@ -21,6 +21,10 @@ struct JournalStory {
 /// Whether the path is a folder, as a journal is.
 bool looksLikeJournal(const std::string& path);
 
+/// The world in a file: what `run --snapshot` wrote, or a snapshot of a journal's folder. The
+/// sentence of a failure names file and offset.
+Result<World> loadSnapshot(const std::string& path);
+
 /// Reads the journal in a folder, which is not changed. Starts from the newest snapshot that is
 /// not after `from`, else from the scene; ends at `to`, else at the last frame. The sentence of a
 /// failure names file and offset.

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "server/host.h"
+#include "server/web_endpoint.h"
 #include "tools/command.h"
 #include "tools/fingerprint.h"
 #include "tools/scene_source.h"
@@ -45,10 +46,17 @@ Answer serve(ServeOptions options) {
     const bool open = config->open;
     Result<std::unique_ptr<server::Host>> host = server::Host::open(std::move(config).value());
     if (!host) return host.error();
+    std::string page;
+    if (!options.web.empty()) {
+        const auto web = server::WebEndpoint::open(**host, {options.web, {}, {}});
+        if (!web) return web.error();
+        page = "http://" + (*web)->address() + "/";
+    }
     if (open)
         std::fprintf(stderr, "warning: --open: whoever reaches %s may play, without a ticket\n",
                      (*host)->address().c_str());
     std::printf("listening on %s\n", (*host)->address().c_str());
+    if (!page.empty()) std::printf("page %s\n", page.c_str());
     std::fflush(stdout);
     const Status ended = (*host)->run();
     if (ended) return Exit::Done;
@@ -67,6 +75,8 @@ void addServe(Menu& menu) {
     sub->add_option("--config", o->config, "TOML file with these options; the command line wins");
     sub->add_option("--listen", o->listen,
                     "HOST:PORT for players; port 0: any free one (default: 127.0.0.1:7777)");
+    sub->add_option("--web", o->web,
+                    "HOST:PORT for a page that shows the sessions; port 0: any free one");
     sub->add_option("--data", o->data, "Folder of the journals (default: huestep-data)");
     sub->add_option("--session", o->sessions, "NAME=SCENE; may be given several times");
     sub->add_flag("--open", o->open, "Let anyone join without a ticket (there are none yet)");

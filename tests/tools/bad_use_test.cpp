@@ -1,0 +1,93 @@
+// Bad use and bad input: status 2, nothing on standard output, and one sentence on standard error
+// that says what and where.
+#include <gtest/gtest.h>
+
+#include "tests/tools/process.h"
+
+namespace huestep::test {
+namespace {
+
+struct Misuse {
+    std::vector<std::string> words;
+    std::string mustSay;  // a part of the sentence
+};
+
+void PrintTo(const Misuse& misuse, std::ostream* out) {
+    for (const std::string& word : misuse.words) *out << word << ' ';
+}
+
+class BadUse : public testing::TestWithParam<Misuse> {};
+
+TEST_P(BadUse, IsAnsweredWithOneSentenceAndStatusTwo) {
+    const Ended ended = huestep(GetParam().words);
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_NE(ended.err.find(GetParam().mustSay), std::string::npos) << ended.err;
+    EXPECT_EQ(linesWith(ended.err, ""), 1) << ended.err;
+    EXPECT_TRUE(ended.err.starts_with("huestep: ")) << ended.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, BadUse,
+    testing::Values(
+        Misuse{{}, "subcommand"}, Misuse{{"fly"}, "subcommand"}, Misuse{{"run"}, "SCENE"},
+        Misuse{{"run", "pyramid", "--tick", "3"}, "--tick"},
+        Misuse{{"run", "pyramid", "--ticks", "many"}, "--ticks"},
+        Misuse{{"run", "pyramid", "--ticks", "0"}, "--ticks"},
+        Misuse{{"run", "pyramid", "--ticks", "-5"}, "--ticks"},
+        Misuse{{"run", "pyramid", "--threads", "65"}, "--threads"},
+        Misuse{{"run", "pyramid", "--simd", "mmx"}, "scalar"},
+        Misuse{{"run", "pyramid", "--engine", "havok"}, "havok"},
+        Misuse{{"run", "pyramid", "--engine", "box2d", "--threads", "2"}, "box2d"},
+        Misuse{{"run", "pyramid", "--engine", "box2d", "--snapshot", "x"}, "--snapshot"},
+        Misuse{{"run", "pyramid:base=0"}, "base"}, Misuse{{"run", "pyramid:height=3"}, "height"},
+        Misuse{{"run", "pyramids"}, "many_pyramids"},
+        Misuse{{"run", "small:n=4", "--ticks", "1", "--snapshot", "/nowhere/x.snap"},
+               "/nowhere/x.snap"},
+        Misuse{{"verify", "pyramid", "--threads", "1,,2"}, "--threads"},
+        Misuse{{"verify", "pyramid", "--threads", "1,2,1"}, "twice"},
+        Misuse{{"verify", "pyramid", "--simd", "scalar,scalar"}, "twice"},
+        Misuse{{"verify", "pyramid", "--engine", "box2d", "--restore-every", "3"}, "box2d"},
+        Misuse{{"verify", "/nowhere/journal"}, "/nowhere/journal"},
+        Misuse{{"replay", "/nowhere/journal"}, "/nowhere/journal"},
+        Misuse{{"diff", "/nowhere/a", "/nowhere/b"}, "/nowhere/a"},
+        Misuse{{"bench", "pyramid", "--engine", "huestep,havok"}, "havok"},
+        Misuse{{"serve"}, "--session"}, Misuse{{"serve", "--session", "play"}, "NAME=SCENE"},
+        Misuse{{"serve", "--session", "play=nothing"}, "nothing"},
+        Misuse{{"serve", "--config", "/nowhere/x.toml"}, "/nowhere/x.toml"},
+        Misuse{{"join", "127.0.0.1:7777"}, "--session"},
+        Misuse{{"join", "127.0.0.1:7777", "--session", "s", "--bot", "dance"}, "wander"},
+        Misuse{{"join", "127.0.0.1:7777", "--session", "s", "--bot", "script:/nowhere/x"},
+               "/nowhere/x"}));
+
+TEST(BadInput, ASceneFileThatIsWrongIsRefusedWithItsPathInsideTheDocument) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "wrong.json";
+    std::ofstream(path) << R"({"version": 1, "bodies": [{"mass": 3}]})";
+    const Ended ended = huestep({"run", path});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_NE(ended.err.find(path), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("bodies[0].mass"), std::string::npos) << ended.err;
+}
+
+TEST(BadInput, AnEmptyFolderIsNoJournal) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "empty");
+    const Ended ended = huestep({"replay", folder / "empty"});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_NE(ended.err.find("empty"), std::string::npos) << ended.err;
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "empty")) << "a reader must write nothing";
+}
+
+TEST(BadInput, AConfigFileIsRefusedWithFileLineAndKey) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "serve.toml";
+    std::ofstream(path) << "open = true\nlissten = \"127.0.0.1:0\"\n";
+    const Ended ended = huestep({"serve", "--config", path});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_NE(ended.err.find(path + ":2: "), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("lissten"), std::string::npos) << ended.err;
+}
+
+}  // namespace
+}  // namespace huestep::test

@@ -1,0 +1,189 @@
+// Subcommands without a network, as processes.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/process.h"
+
+namespace huestep::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The one JSON document of a command that must end with `status`.
+Json documentOf(std::vector<std::string> words, int status = 0) {
+    words.push_back("--json");
+    const Ended ended = huestep(words);
+    EXPECT_EQ(ended.status, status) << ended.err;
+    Json document = Json::parse(ended.out, nullptr, false);
+    EXPECT_FALSE(document.is_discarded()) << ended.out;
+    return document;
+}
+
+TEST(Help, EverySubcommandAnswersWithAnExample) {
+    for (const char* name :
+         {"scenes", "run", "verify", "serve", "join", "replay", "diff", "bench"}) {
+        const Ended ended = huestep({name, "--help"});
+        EXPECT_EQ(ended.status, 0) << name;
+        const std::string example = after(ended.out, "Example:\n");
+        EXPECT_TRUE(example.starts_with(std::string("  huestep ") + name)) << ended.out;
+    }
+}
+
+TEST(Scenes, EverySceneOfTheListBuildsAndSteps) {
+    const Json document = documentOf({"scenes"});
+    EXPECT_GE(document["scenes"].size(), 8u);
+    for (const Json& scene : document["scenes"]) {
+        const Json run = documentOf({"run", scene["name"], "--ticks", "2"});
+        EXPECT_EQ(run["bodies"], scene["bodies"]) << scene["name"];
+    }
+}
+
+TEST(Run, SaysTheSameHashForEveryThreadCountAndWidth) {
+    const Json one = documentOf({"run", "pyramid:base=12", "--ticks", "60", "--simd", "scalar"});
+    const Json many = documentOf({"run", "pyramid:base=12", "--ticks", "60", "--threads", "3"});
+    EXPECT_EQ(one["hash"], many["hash"]);
+    EXPECT_EQ(one["ticks"], 60);
+    EXPECT_EQ(one["bodies"], 79);  // 12 · 13 / 2 boxes and the ground
+    EXPECT_EQ(many["waited_ms"].size(), 3u);
+}
+
+TEST(Run, PrintsAHashAfterEveryKTicksAndTheLastOneAgrees) {
+    const Json run = documentOf({"run", "small:n=6", "--ticks", "30", "--hash-every", "10"});
+    ASSERT_EQ(run["hashes"].size(), 3u);
+    EXPECT_EQ(run["hashes"][2]["tick"], 30);
+    EXPECT_EQ(run["hashes"][2]["motion"], run["hash"]["motion"]);
+    EXPECT_EQ(run["hashes"][2]["full"], run["hash"]["full"]);
+}
+
+TEST(Run, MeasuresAPendulumAgainstItsClosedForm) {
+    const Json run = documentOf({"run", "pendulum:angle=90", "--ticks", "600"});
+    const Json& pendulum = run["accuracy"]["pendulum"];
+    // The elliptic integral K(1/2) = 1.8540746773: T = 4 K √(L/g) with L = 1 + r²/2, r = 0.1.
+    EXPECT_NEAR(pendulum["exact_period_s"].get<double>(),
+                4.0 * 1.85407467730137 * std::sqrt(1.005 / 10.0), 1e-6);
+    EXPECT_NEAR(pendulum["period_s"].get<double>() / pendulum["exact_period_s"].get<double>(), 1.0,
+                1e-3);
+    EXPECT_LT(std::abs(pendulum["energy_loss"].get<double>()), 0.02);
+}
+
+TEST(Run, MeasuresFreeFlightAgainstItsParabola) {
+    const Json run = documentOf({"run", "ballistic"});
+    EXPECT_NEAR(run["accuracy"]["ballistic"]["seconds"].get<double>(), 1.0, 1e-6);
+    EXPECT_LT(run["accuracy"]["ballistic"]["max_error_m"].get<double>(), 1e-4);
+    const Json peer = documentOf({"run", "ballistic", "--engine", "box2d"});
+    // Box2D's Euler step is off by g·t·Δt/2 = 8.3 cm after one second.
+    EXPECT_NEAR(peer["accuracy"]["ballistic"]["max_error_m"].get<double>(), 10.0 / 120.0, 1e-3);
+}
+
+TEST(Verify, FindsASmallWorldEqualInEveryOrderAfterNoiseAndRestores) {
+    const Json document = documentOf({"verify", "mixed", "--ticks", "90", "--threads", "1,2",
+                                      "--restore-every", "7", "--reorder"});
+    EXPECT_EQ(document["equal"], true) << document.value("difference", "");
+    std::set<std::string> stories;
+    for (const Json& row : document["combinations"]) {
+        stories.insert(row["story"]);
+        EXPECT_EQ(row["tick"], 90);
+    }
+    EXPECT_EQ(stories.size(), 5u);
+}
+
+TEST(Verify, GivesTheSameAnswerForAnyNumberOfJobs) {
+    const std::vector<std::string> words = {"verify", "hinges:columns=2", "--ticks", "40",
+                                            "--reorder"};
+    std::vector<std::string> one = words;
+    one.insert(one.end(), {"--jobs", "1"});
+    std::vector<std::string> many = words;
+    many.insert(many.end(), {"--jobs", "5"});
+    EXPECT_EQ(documentOf(one), documentOf(many));
+}
+
+TEST(Verify, SaysWhereABox2dWorldDependsOnItsHistory) {
+    const Json document = documentOf(
+        {"verify", "pyramid:base=10", "--ticks", "120", "--engine", "box2d", "--reorder"}, 1);
+    EXPECT_EQ(document["equal"], false);
+    EXPECT_EQ(document["combinations"][0]["equal"], true) << "the same history, the same world";
+    int different = 0;
+    for (const Json& row : document["combinations"])
+        if (!row["equal"]) {
+            ++different;
+            EXPECT_GE(row["differs_at"], 1);
+            EXPECT_NE(row["difference"].get<std::string>().find("body "), std::string::npos);
+        }
+    EXPECT_GE(different, 1);
+}
+
+TEST(Diff, NamesTheFieldInWhichTwoSnapshotsDiffer) {
+    const TemporaryFolder folder;
+    for (const char* base : {"3", "4"})
+        documentOf(
+            {"run", std::string("small:n=") + base, "--ticks", "5", "--snapshot", folder / base});
+    documentOf({"run", "small:n=3", "--ticks", "5", "--threads", "2", "--snapshot", folder / "5"});
+    EXPECT_EQ(documentOf({"diff", folder / "3", folder / "5"})["equal"], true);
+    const Json document = documentOf({"diff", folder / "3", folder / "4"}, 1);
+    EXPECT_EQ(document["difference"]["tick"], 5);
+    EXPECT_NE(document["difference"]["field"], "");
+    EXPECT_NE(document["difference"]["left"], document["difference"]["right"]);
+}
+
+TEST(Diff, RefusesASnapshotWithAFlippedByteAndNamesTheOffset) {
+    const TemporaryFolder folder;
+    const std::string good = folder / "good.snap";
+    const std::string bad = folder / "bad.snap";
+    documentOf({"run", "small:n=20", "--ticks", "5", "--snapshot", good});
+    std::string bytes = textOf(good);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    std::ofstream(bad, std::ios::binary) << bytes;
+    const Ended ended = huestep({"diff", good, bad});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_NE(ended.err.find(bad), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("byte"), std::string::npos) << ended.err;
+}
+
+TEST(Bench, PutsEnginesSideBySideWithHashesAndErrors) {
+    const TemporaryFolder folder;
+    const std::string csv = folder / "bench.csv";
+    const Json document = documentOf({"bench", "small:n=10", "--ticks", "20", "--threads", "1,2",
+                                      "--engine", "huestep,box2d", "--repeat", "2", "--csv", csv});
+    for (const char* key : {"machine", "compiler", "commit"})
+        EXPECT_NE(document[key].get<std::string>(), "") << key;
+    ASSERT_EQ(document["results"].size(), 3u);  // Box2D has no threads
+    EXPECT_EQ(document["results"][0]["hash"], document["results"][1]["hash"]);
+    EXPECT_NE(document["results"][0]["hash"], document["results"][2]["hash"]);
+    for (const Json& row : document["results"]) {
+        const Json& ms = row["ms_per_tick"];
+        EXPECT_LE(ms["min"], ms["q1"]);
+        EXPECT_LE(ms["q1"], ms["median"]);
+        EXPECT_LE(ms["median"], ms["q3"]);
+        EXPECT_LE(ms["psm"], ms["median"]);
+        EXPECT_GE(row["max_penetration_m"], 0.0);
+        EXPECT_GE(row["max_joint_error_m"], 0.0);
+    }
+    EXPECT_EQ(linesWith(textOf(csv), ""), 4);
+}
+
+TEST(Interrupt, CtrlCEndsARunCleanlyWithWhatItHas) {
+    Process process({huestepProgram, "run", "small", "--ticks", "1000000000", "--json"});
+    // Time to load libraries and begin; the run itself would take hours.
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    process.send(SIGINT);
+    EXPECT_EQ(process.wait(20.0), 0);
+    const Json document = Json::parse(process.out(), nullptr, false);
+    ASSERT_FALSE(document.is_discarded()) << process.out();
+    EXPECT_EQ(document["interrupted"], true);
+    EXPECT_NE(document["hash"]["motion"], "");
+}
+
+TEST(Interrupt, CtrlCEndsAComparisonWithoutSayingThatAllIsEqual) {
+    Process process({huestepProgram, "verify", "pyramid:base=30", "--ticks", "1000000", "--json"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    process.send(SIGINT);
+    EXPECT_EQ(process.wait(20.0), 1);
+    const Json document = Json::parse(process.out(), nullptr, false);
+    ASSERT_FALSE(document.is_discarded()) << process.out();
+    EXPECT_EQ(document["finished"], false);
+    EXPECT_EQ(document["equal"], false);
+}
+
+}  // namespace
+}  // namespace huestep::test
