@@ -9,7 +9,8 @@ TEST(Forces, OfATickThatAlsoSpawnsReachTheirBodyAlone) {
     scene.gravity = {};
     World world = worldOf(scene);
     Spawn spawn;
-    for (int i = 0; i < 100; ++i) spawn.bodies.push_back(discAt({0.0f, 10.0f + 2.0f * static_cast<float>(i)}));
+    for (int i = 0; i < 100; ++i)
+        spawn.bodies.push_back(discAt({0.0f, 10.0f + 2.0f * static_cast<float>(i)}));
     const std::vector<Command> commands{{0, 1, ApplyForce{1, {5.0f, 0.0f}, {}}}, {0, 2, spawn}};
     const Events& events = world.step(commands);
     EXPECT_TRUE(events.quarantined.empty());
