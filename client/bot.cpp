@@ -89,8 +89,8 @@ class WanderBot : public Bot {
     }
 
     void grabOrRelease(const Situation& now, Vec2 here, std::vector<Action>& out) {
-        if (m_holding) {
-            m_holding = false;
+        // What the world says it holds: a grab ends with its body, whoever removed that.
+        if (holds(now)) {
             out.push_back(Release{});
             return;
         }
@@ -100,7 +100,13 @@ class WanderBot : public Bot {
         const Vec2 point = *centreOf(now.world, body);
         const Vec2 pull{m_dice.between(-2.0f, 2.0f), m_dice.between(0.5f, 3.0f)};
         out.push_back(Grab{body, point, point + pull});
-        m_holding = true;
+    }
+
+    static bool holds(const Situation& now) {
+        for (const PlayerRecord& player : now.world.players()) {
+            if (player.id == now.player) return player.grab != 0;
+        }
+        return false;
     }
 
     static std::vector<BodyId> grabbable(const Situation& now, Vec2 here) {
@@ -132,7 +138,6 @@ class WanderBot : public Bot {
     Dice m_dice;
     int m_pushes = 0;
     Vec2 m_heading;
-    bool m_holding = false;
 };
 
 class ScriptBot : public Bot {

@@ -1,0 +1,215 @@
+/** The page of one session: frames come in, the newest is drawn at the screen's next turn. */
+import { Camera } from './camera.js';
+import { lookOf, looks, Painter } from './draw.js';
+import { Feed } from './feed.js';
+import { Legend, refreshMs } from './legend.js';
+import { boundsOf } from './outline.js';
+import { readFrame, ViewError } from './view.js';
+
+/** Ticks whose hash is kept for tests. */
+const remembered = 1024;
+
+/** @template {HTMLElement} T @param {string} id @returns {T} */
+function byId(id) {
+  return /** @type {T} */ (document.getElementById(id));
+}
+
+const session = new URLSearchParams(location.search).get('session') ?? '';
+const surface = /** @type {HTMLCanvasElement} */ (byId('canvas'));
+const shown = {
+  tick: byId('tick'), root: byId('root'), players: byId('players'), bodies: byId('bodies'),
+  awake: byId('awake'), contacts: byId('contacts'), rate: byId('rate'),
+};
+
+/** @type {import('./view.js').View | null} */
+let newest = null;
+let paused = false;
+let undrawn = false;
+let definitions = 0;
+let legendAt = 0;
+/** When the frames of the last second came, ms. @type {number[]} */
+const arrivals = [];
+
+/** What a test, or a curious person in the console, may look at. */
+const huestep = {
+  session,
+  state: 'connecting',
+  tick: 0,
+  root: '',
+  players: 0,
+  bodies: 0,
+  asleep: 0,
+  contacts: 0,
+  definitions: 0,
+  /** Frames that came, that were drawn, and that a newer one overtook before the screen's turn. */
+  received: 0,
+  drawn: 0,
+  overtaken: 0,
+  /** Ticks that no frame told of. */
+  missed: 0,
+  losses: 0,
+  badFrames: 0,
+  /** ms that drawing the last frames took. @type {number[]} */
+  drawMs: [],
+  /** @type {{tick: number, root: string}[]} */
+  history: [],
+  /** @type {Record<string, number>} */
+  looks: {},
+};
+Object.assign(window, { huestep });
+
+const camera = new Camera(surface, () => redraw());
+const painter = new Painter(surface, camera);
+const legend = new Legend(byId('body-legend'), byId('contact-legend'));
+
+function redraw() {
+  if (huestep.state !== 'broken') requestAnimationFrame(draw);
+}
+
+function fit() {
+  if (!newest) return;
+  const gap = Math.min(24, camera.width / 24);
+  const foot = byId('foot').offsetHeight;
+  camera.fit(boundsOf(painter.outlines, newest), { left: gap, right: gap, top: gap, bottom: gap + foot });
+}
+
+/** @param {import('./view.js').View} view @returns {boolean} whether the view can be drawn */
+function takeDefinitions(view) {
+  if (view.shapes || view.bodies === 0) {
+    const first = definitions === 0;
+    definitions = view.definitions;
+    if (view.shapes) painter.define(view.shapes);
+    if (first) {
+      newest = view;
+      fit();
+    }
+  }
+  return view.definitions === definitions;
+}
+
+/** @param {ArrayBuffer} frame */
+function take(frame) {
+  let view;
+  try {
+    view = readFrame(frame);
+  } catch (problem) {
+    if (!(problem instanceof ViewError) && !(problem instanceof RangeError)) throw problem;
+    huestep.badFrames += 1;
+    return feed.reject();
+  }
+  if (!takeDefinitions(view)) return;
+  if (view.tick > huestep.tick + 1 && huestep.received > 0) huestep.missed += view.tick - huestep.tick - 1;
+  huestep.received += 1;
+  huestep.tick = view.tick;
+  huestep.root = view.root;
+  huestep.history.push({ tick: view.tick, root: view.root });
+  if (huestep.history.length > remembered) huestep.history.shift();
+  arrivals.push(performance.now());
+  if (paused) return;
+  if (undrawn) huestep.overtaken += 1;
+  newest = view;
+  undrawn = true;
+  redraw();
+}
+
+/** @param {import('./view.js').View} view */
+function showNumbers(view) {
+  const counts = looks.map(() => 0);
+  let asleep = 0;
+  let awake = 0;
+  for (const flags of view.flags) {
+    counts[lookOf(flags)] += 1;
+    if (((flags >> 1) & 3) === 2) {
+      if (flags & 1) asleep += 1;
+      else awake += 1;
+    }
+  }
+  Object.assign(huestep, { players: view.players, bodies: view.bodies, contacts: view.contacts.count,
+                           asleep, definitions: view.definitions });
+  looks.forEach((look, i) => { huestep.looks[look] = counts[i]; });
+  shown.tick.textContent = String(view.tick);
+  shown.root.textContent = view.root;
+  shown.players.textContent = String(view.players);
+  shown.bodies.textContent = String(view.bodies);
+  shown.awake.textContent = String(awake);
+  shown.contacts.textContent = String(view.contacts.count);
+  const now = performance.now();
+  if (now - legendAt < refreshMs) return;
+  legendAt = now;
+  legend.show(counts, view.contacts);
+  byId('scale').textContent = `${Number(painter.gridStep().toPrecision(1))} m`;
+  byId('ruler').style.width = `${painter.gridStep() * camera.scale}px`;
+}
+
+function draw() {
+  if (undrawn && newest) {
+    undrawn = false;
+    huestep.drawn += 1;
+    const begin = performance.now();
+    showNumbers(newest);
+    painter.draw(newest);
+    huestep.drawMs.push(performance.now() - begin);
+    if (huestep.drawMs.length > remembered) huestep.drawMs.shift();
+  } else {
+    painter.draw(newest);
+  }
+}
+
+/** @param {string} state @param {string} sentence */
+function showState(state, sentence) {
+  huestep.state = state;
+  huestep.losses = feed?.losses ?? 0;
+  const line = byId('state');
+  line.dataset.state = paused && state === 'live' ? 'paused' : state;
+  line.textContent = paused && state === 'live' ? 'paused' : sentence;
+  document.body.classList.toggle('stale', state !== 'live');
+}
+
+function pause() {
+  paused = !paused;
+  const button = byId('pause');
+  button.setAttribute('aria-pressed', String(paused));
+  button.textContent = paused ? 'Resume' : 'Pause';
+  showState(huestep.state, huestep.state);
+}
+
+function resize() {
+  painter.resize();
+  if (camera.fitted) fit();
+  redraw();
+}
+
+window.setInterval(() => {
+  const since = performance.now() - 1000;
+  while (arrivals.length > 0 && arrivals[0] < since) arrivals.shift();
+  shown.rate.textContent = String(arrivals.length);
+  if (huestep.state === 'live' && !paused) showState('live', arrivals.length > 0 ? 'live' : 'standing still');
+}, 500);
+
+byId('session').textContent = session;
+document.title = `${session} · Huestep`;
+byId('fit').addEventListener('click', fit);
+byId('pause').addEventListener('click', pause);
+byId('closer').addEventListener('click', () => camera.zoom(1.4));
+byId('farther').addEventListener('click', () => camera.zoom(1 / 1.4));
+surface.addEventListener('dblclick', fit);
+window.addEventListener('keydown', (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey || event.target instanceof HTMLButtonElement) return;
+  /** @type {Record<string, () => void>} */
+  const keys = {
+    ' ': pause, f: fit, '+': () => camera.zoom(1.4), '=': () => camera.zoom(1.4), '-': () => camera.zoom(1 / 1.4),
+    ArrowLeft: () => camera.pan(60, 0), ArrowRight: () => camera.pan(-60, 0),
+    ArrowUp: () => camera.pan(0, 60), ArrowDown: () => camera.pan(0, -60),
+  };
+  const action = keys[event.key];
+  if (!action) return;
+  event.preventDefault();
+  action();
+});
+window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  painter.restyle();
+  redraw();
+});
+new ResizeObserver(resize).observe(surface);
+painter.resize();
+const feed = new Feed(session, take, showState);

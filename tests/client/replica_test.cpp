@@ -1,0 +1,352 @@
+// The client's state machine, fed by hand with what a server would say, and with what none should.
+#include "client/replica.h"
+
+#include <gtest/gtest.h>
+
+#include "core/state/hash.h"
+
+namespace huestep::client {
+namespace {
+
+using namespace protocol;
+
+Scene smallScene() {
+    Scene scene;
+    BodyDef ball;
+    ball.type = BodyType::Dynamic;
+    ball.position = {0.0f, 5.0f};
+    ball.shapes.push_back(ShapeDef::circle({}, 0.5f));
+    scene.bodies = {ball, ball};
+    scene.bodies[1].position.x = 3.0f;
+    PlayerDef players;
+    players.body = ball;
+    players.spawnPoints = {{0.0f, 6.0f}};
+    scene.players = players;
+    return scene;
+}
+
+/// A server of one client, by hand.
+struct Table {
+    Replica replica{ReplicaConfig{"play", Role::Player, {1, 2, 3}, {}, 30}};
+    World world = *World::create(smallScene());
+    std::uint64_t now = 1'000;
+
+    std::vector<Message> take() { return replica.takeOutgoing(); }
+    template <class M>
+    static std::optional<M> find(const std::vector<Message>& messages) {
+        for (const Message& message : messages) {
+            if (const auto* found = std::get_if<M>(&message)) return *found;
+        }
+        return std::nullopt;
+    }
+    bool say(Message message) { return replica.receive(std::move(message), now).ok(); }
+
+    void welcome(PlayerId player = 1, std::uint64_t lastSequence = 0, std::uint32_t epoch = 1) {
+        replica.connected(now);
+        Welcome welcome;
+        welcome.session = "play";
+        welcome.player = player;
+        welcome.epoch = epoch;
+        welcome.tick = world.tick();
+        welcome.lastSequence = lastSequence;
+        welcome.resume = {9, 9};
+        EXPECT_TRUE(say(welcome));
+    }
+    void snapshot(std::size_t chunk = 1'000) {
+        const std::vector<std::byte> bytes = world.save();
+        EXPECT_TRUE(say(SnapshotBegin{world.tick(), bytes.size(), hash64(bytes)}));
+        for (std::size_t at = 0; at < bytes.size(); at += chunk) {
+            const std::size_t count = std::min(chunk, bytes.size() - at);
+            const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+            EXPECT_TRUE(say(SnapshotChunk{at, {from, from + static_cast<std::ptrdiff_t>(count)}}));
+        }
+        EXPECT_TRUE(say(SnapshotEnd{world.tick()}));
+    }
+    Frame frame(std::vector<Command> commands = {}, std::uint64_t committed = 0) {
+        Frame out{world.tick(), std::move(commands), {}, world.motionRoot(), committed};
+        world.step(out.commands);
+        return out;
+    }
+    void enter() {
+        world.step(std::vector<Command>{{0, 1, AddPlayer{1}}});
+        welcome();
+        snapshot();
+        take();
+    }
+};
+
+TEST(Replica, SaysHelloWithItsFingerprintAndSession) {
+    Table table;
+    table.replica.connected(0);
+    const std::vector<Message> out = table.take();
+    const auto hello = Table::find<Hello>(out);
+    ASSERT_TRUE(hello.has_value());
+    EXPECT_EQ(hello->session, "play");
+    EXPECT_EQ(hello->fingerprint, (Fingerprint{1, 2, 3}));
+    EXPECT_EQ(hello->haveTick, 0u);
+    EXPECT_FALSE(hello->resume.has_value());
+}
+
+TEST(Replica, FollowsFramesAndComparesEveryHash) {
+    Table table;
+    table.enter();
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(table.say(table.frame()));
+    EXPECT_EQ(table.replica.world()->fullRoot(), table.world.fullRoot());
+    EXPECT_EQ(table.replica.counts().hashesCompared, 100u);
+    EXPECT_EQ(table.replica.counts().ticks, 100u);
+    EXPECT_EQ(table.replica.counts().mismatches, 0u);
+}
+
+TEST(Replica, SendsACheckpointNowAndThen) {
+    Table table;
+    table.enter();
+    std::size_t checkpoints = 0;
+    for (int i = 0; i < 90; ++i) {
+        table.say(table.frame());
+        const auto intent = Table::find<Intent>(table.take());
+        if (!intent || !intent->checkpoint) continue;
+        ++checkpoints;
+        EXPECT_EQ(intent->checkpoint->tick, table.world.tick());
+        EXPECT_EQ(intent->checkpoint->motionRoot, table.world.motionRoot());
+    }
+    EXPECT_EQ(checkpoints, 3u);
+}
+
+TEST(Replica, AMismatchFreezesItsTickAsksForItAndNamesBodyAndField) {
+    Table table;
+    table.enter();
+    for (int i = 0; i < 10; ++i) table.say(table.frame());
+    table.replica.worldForTest()->corruptForTest(2, 4, 12);
+    const World frozen = table.world;
+    const std::uint64_t tick = table.world.tick();
+    EXPECT_TRUE(table.say(table.frame()));
+    EXPECT_FALSE(table.replica.following());
+    const std::vector<Message> asked = table.take();
+    EXPECT_EQ(Table::find<HashQuery>(asked)->tick, tick);
+    EXPECT_EQ(Table::find<SnapshotRequest>(asked)->tick, tick);
+    EXPECT_TRUE(table.say(table.frame())) << "frames are let go meanwhile";
+    EXPECT_EQ(table.replica.world()->tick(), tick);
+
+    EXPECT_TRUE(table.say(HashNodes{tick, frozen.motionLeaves(), 0}));
+    table.world = frozen;
+    table.snapshot();
+    const auto report = Table::find<DesyncReport>(table.take());
+    ASSERT_TRUE(report.has_value());
+    EXPECT_EQ(report->tick, tick);
+    EXPECT_EQ(report->body, 2u);
+    EXPECT_EQ(report->field, "velocity.x");
+    EXPECT_NE(report->here, report->there);
+    EXPECT_EQ(report->yours, frozen.motionRoot());
+    EXPECT_TRUE(table.replica.following());
+    EXPECT_TRUE(table.say(table.frame()));
+    EXPECT_EQ(table.replica.world()->fullRoot(), table.world.fullRoot());
+    EXPECT_EQ(table.replica.counts().corrections, 1u);
+}
+
+TEST(Replica, IfTheServerNoLongerHasTheTickTheBlockOfBodiesIsNamed) {
+    Table table;
+    table.enter();
+    table.replica.worldForTest()->corruptForTest(2, 4, 12);
+    const std::uint64_t tick = table.world.tick();
+    const std::vector<std::uint64_t> leaves = table.world.motionLeaves();
+    table.say(table.frame());
+    for (int i = 0; i < 50; ++i) table.frame();
+    EXPECT_TRUE(table.say(HashNodes{tick, leaves, 0}));
+    table.take();
+    table.snapshot();
+    const auto report = Table::find<DesyncReport>(table.take());
+    ASSERT_TRUE(report.has_value());
+    EXPECT_EQ(report->tick, tick);
+    EXPECT_EQ(report->body, 1u) << "the block's first";
+    EXPECT_EQ(report->field, "block 0 of 64 bodies");
+    EXPECT_EQ(table.replica.world()->tick(), table.world.tick());
+}
+
+TEST(Replica, OwnCommandsHaveRisingSequencesAndAreFoundInFrames) {
+    Table table;
+    table.enter();
+    EXPECT_TRUE(table.replica.act(ApplyImpulse{3, {1, 0}, {}}, table.now));
+    EXPECT_TRUE(table.replica.act(Release{}, table.now));
+    const auto intent = Table::find<Intent>(table.take());
+    ASSERT_TRUE(intent.has_value());
+    ASSERT_EQ(intent->commands.size(), 2u);
+    EXPECT_EQ(intent->commands[0].sequence, 1u);
+    EXPECT_EQ(intent->commands[1].sequence, 2u);
+    table.now += 50'000'000;
+    EXPECT_TRUE(table.say(table.frame(intent->commands)));
+    EXPECT_EQ(table.replica.counts().commandsSeen, 2u);
+    EXPECT_EQ(table.replica.counts().commandsRejected, 1u) << "nothing was grabbed";
+    EXPECT_NEAR(table.replica.statistics().latencyMedian, 0.05, 1e-9);
+}
+
+TEST(Replica, NoMoreCommandsInAnIntentThanWelcomeAllows) {
+    Table table;
+    table.enter();
+    for (int i = 0; i < 40; ++i) table.replica.act(Release{}, table.now);
+    std::vector<std::size_t> sizes;
+    for (const Message& message : table.take()) {
+        sizes.push_back(std::get<Intent>(message).commands.size());
+    }
+    EXPECT_EQ(sizes, (std::vector<std::size_t>{16, 16, 8}));
+}
+
+TEST(Replica, CommandsThatWaitForTheirCommitAreBounded) {
+    Table table;
+    table.enter();
+    for (std::size_t i = 0; i < maxPendingCommands; ++i) {
+        EXPECT_TRUE(table.replica.act(Release{}, table.now));
+    }
+    EXPECT_FALSE(table.replica.act(Release{}, table.now));
+    const auto intent = Table::find<Intent>(table.take());
+    table.say(table.frame(intent->commands));
+    EXPECT_FALSE(table.replica.act(Release{}, table.now)) << "seen is not committed";
+    table.say(table.frame({}, table.world.tick()));
+    EXPECT_TRUE(table.replica.act(Release{}, table.now));
+}
+
+TEST(Replica, AfterAResumeWhatTheServerDoesNotHaveIsSentAgainAndNothingElse) {
+    Table table;
+    table.enter();
+    for (int i = 0; i < 3; ++i) table.replica.act(Release{}, table.now);
+    const auto intent = Table::find<Intent>(table.take());
+    // The server ordered the first two, and committed the first.
+    table.say(table.frame({intent->commands[0]}));
+    table.say(table.frame({intent->commands[1]}, table.world.tick()));
+    table.replica.disconnected();
+
+    table.replica.connected(table.now);
+    const auto hello = Table::find<Hello>(table.take());
+    EXPECT_EQ(hello->resume, (ResumeToken{9, 9}));
+    EXPECT_EQ(hello->haveTick, table.world.tick());
+    EXPECT_EQ(hello->haveHash, table.world.motionRoot());
+    Welcome welcome;
+    welcome.player = 1;
+    welcome.epoch = 1;
+    welcome.tick = table.world.tick();
+    welcome.lastSequence = 2;
+    table.say(welcome);
+    const auto again = Table::find<Intent>(table.take());
+    ASSERT_TRUE(again.has_value());
+    EXPECT_EQ(again->commands, (std::vector<Command>{intent->commands[2]}));
+    EXPECT_TRUE(table.say(table.frame())) << "the tail goes on without a snapshot";
+    EXPECT_EQ(table.replica.counts().resumes, 1u);
+}
+
+TEST(Replica, AServerThatLostUncommittedTicksGetsThemAgainOnce) {
+    Table table;
+    table.enter();
+    table.replica.act(Release{}, table.now);
+    const auto intent = Table::find<Intent>(table.take());
+    const World saved = table.world;
+    table.say(table.frame(intent->commands));
+    table.replica.disconnected();
+    table.world = saved;  // the frame was not on disk
+    table.welcome(1, 0, 2);
+    const auto again = Table::find<Intent>(table.take());
+    ASSERT_TRUE(again.has_value());
+    EXPECT_EQ(again->commands, intent->commands);
+    table.snapshot();
+    EXPECT_EQ(table.replica.counts().rolledBack, 1u);
+    EXPECT_EQ(table.replica.counts().committedLost, 0u);
+}
+
+TEST(Replica, ACommittedTickThatIsLostIsCounted) {
+    Table table;
+    table.enter();
+    const World saved = table.world;
+    for (int i = 0; i < 5; ++i) table.say(table.frame({}, table.world.tick()));
+    table.replica.disconnected();
+    table.world = saved;
+    table.welcome(1, 0, 2);
+    EXPECT_EQ(table.replica.counts().committedLost, 4u);
+}
+
+TEST(Replica, WhatNoServerSaysEndsTheConnectionWithABye) {
+    const auto refused = [](auto speak) {
+        Table table;
+        table.enter();
+        const bool taken = speak(table);
+        const auto bye = Table::find<Bye>(table.take());
+        return !taken && bye.has_value();
+    };
+    EXPECT_TRUE(refused([](Table& t) { return t.say(Hello{}); }));
+    EXPECT_TRUE(refused([](Table& t) { return t.say(Intent{}); }));
+    EXPECT_TRUE(refused([](Table& t) {
+        t.frame();
+        return t.say(t.frame());  // a gap
+    }));
+    EXPECT_TRUE(refused([](Table& t) { return t.say(SnapshotChunk{0, {std::byte{1}}}); }));
+    EXPECT_TRUE(refused([](Table& t) { return t.say(SnapshotEnd{1}); }));
+    EXPECT_TRUE(refused([](Table& t) { return t.say(SnapshotBegin{1, 0, 0}); }));
+    EXPECT_TRUE(refused([](Table& t) {
+        return t.say(SnapshotBegin{1, client::maxSnapshotBytes + 1, 0});
+    }));
+    EXPECT_TRUE(refused([](Table& t) {
+        t.say(SnapshotBegin{1, 10, 0});
+        return t.say(SnapshotChunk{0, std::vector<std::byte>(11)});
+    }));
+    EXPECT_TRUE(refused([](Table& t) {
+        t.say(SnapshotBegin{1, 10, 0});
+        return t.say(SnapshotChunk{4, std::vector<std::byte>(2)});
+    }));
+    EXPECT_TRUE(refused([](Table& t) {
+        const std::vector<std::byte> bytes = t.world.save();
+        t.say(SnapshotBegin{t.world.tick(), bytes.size(), hash64(bytes) + 1});
+        t.say(SnapshotChunk{0, bytes});
+        return t.say(SnapshotEnd{t.world.tick()});
+    }));
+    EXPECT_TRUE(refused([](Table& t) {
+        std::vector<std::byte> bytes = t.world.save();
+        bytes.resize(bytes.size() / 2);
+        t.say(SnapshotBegin{t.world.tick(), bytes.size(), hash64(bytes)});
+        t.say(SnapshotChunk{0, bytes});
+        return t.say(SnapshotEnd{t.world.tick()});
+    }));
+}
+
+TEST(Replica, TheFirstMessageMustBeAWelcome) {
+    Table table;
+    table.replica.connected(0);
+    EXPECT_FALSE(table.say(table.frame()));
+}
+
+TEST(Replica, ABrokenSnapshotLeavesTheWorldAsItWas) {
+    Table table;
+    table.enter();
+    for (int i = 0; i < 5; ++i) table.say(table.frame());
+    const std::uint64_t root = table.replica.world()->fullRoot();
+    std::vector<std::byte> bytes = table.world.save();
+    bytes[bytes.size() / 2] ^= std::byte{64};
+    table.say(SnapshotBegin{table.world.tick(), bytes.size(), hash64(bytes)});
+    table.say(SnapshotChunk{0, bytes});
+    table.say(SnapshotEnd{table.world.tick()});
+    ASSERT_NE(table.replica.world(), nullptr);
+    const bool kept = table.replica.world()->fullRoot() == root;
+    EXPECT_TRUE(kept || table.replica.following()) << "a bit in a value may pass, half a world not";
+}
+
+TEST(Replica, ByeAndPingAreAnsweredAsTheyShould) {
+    Table table;
+    table.enter();
+    table.say(Ping{5, false});
+    EXPECT_EQ(*Table::find<Ping>(table.take()), (Ping{5, true}));
+    table.say(Bye{ByeReason::ServerStops, "stops", true});
+    ASSERT_TRUE(table.replica.bye().has_value());
+    EXPECT_EQ(table.replica.bye()->reason, ByeReason::ServerStops);
+    EXPECT_FALSE(table.replica.following());
+}
+
+TEST(Replica, ARefusedTokenIsNotOfferedAgain) {
+    Table table;
+    table.enter();
+    table.replica.disconnected();
+    table.replica.connected(table.now);
+    table.take();
+    table.say(Bye{ByeReason::ResumeRefused, "used", false});
+    table.replica.disconnected();
+    table.replica.connected(table.now);
+    EXPECT_FALSE(Table::find<Hello>(table.take())->resume.has_value());
+}
+
+}  // namespace
+}  // namespace huestep::client
