@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "server/host.h"
+#include "server/log.h"
 #include "server/web_endpoint.h"
 #include "tools/command.h"
 #include "tools/fingerprint.h"
@@ -48,7 +49,8 @@ Answer serve(ServeOptions options) {
     if (!host) return host.error();
     std::string page;
     if (!options.web.empty()) {
-        const auto web = server::WebEndpoint::open(**host, {options.web, {}, {}});
+        const auto web =
+            server::WebEndpoint::open(**host, {options.web, {}, server::logToStandardError()});
         if (!web) return web.error();
         page = "http://" + (*web)->address() + "/";
     }
