@@ -7,6 +7,7 @@
 
 #include "core/math/trig.h"
 #include "protocol/json_document.h"
+#include "protocol/plain_text.h"
 #include "protocol/scene_fields.h"
 #include "protocol/scene_file.h"
 #include "protocol/scene_json.h"
@@ -30,6 +31,7 @@ void read(Trail& trail, const JsonValue& json, bool& out) {
 
 void read(Trail& trail, const JsonValue& json, std::string& out) {
     expect(trail, json, Kind::String);
+    if (!isPlainText(json.text)) trail.refuse("must be text without control characters");
     out = json.text;
 }
 

@@ -119,9 +119,6 @@ class Reading : public Trail {
     std::size_t m_budget;
 };
 
-/// Whether the bytes are UTF-8 (RFC 3629) without control characters (U+0000 to U+001F, U+007F).
-bool isPlainText(std::string_view text);
-
 /// What Cap'n Proto has to say, on one line.
 std::string reasonOf(const ::kj::Exception& exception);
 

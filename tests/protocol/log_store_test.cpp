@@ -148,39 +148,5 @@ TEST(LogStore, AJournalInAFolderReadsBackAndLeftoversOfAReplaceAreIgnored) {
     EXPECT_EQ(contents->snapshotTick, 2u);
 }
 
-TEST(MemoryStore, ACrashKeepsWhatWasSyncedAndAtMostWhatWasWritten) {
-    for (std::uint64_t seed = 0; seed < 50; ++seed) {
-        MemoryStore store;
-        ASSERT_TRUE(store.create("f").ok());
-        ASSERT_TRUE(store.append("f", std::vector<std::byte>(1'000, std::byte{1})).ok());
-        ASSERT_TRUE(store.sync("f").ok());
-        ASSERT_TRUE(store.append("f", std::vector<std::byte>(3'000, std::byte{2})).ok());
-        store.crash(seed);
-        const auto bytes = *store.read("f");
-        ASSERT_GE(bytes.size(), 1'000u);
-        ASSERT_LE(bytes.size(), 4'000u);
-        for (std::size_t i = 0; i < bytes.size(); ++i) {
-            const bool allowed = i < 1'000 ? bytes[i] == std::byte{1}
-                                           : bytes[i] == std::byte{2} || bytes[i] == std::byte{0};
-            ASSERT_TRUE(allowed) << "seed " << seed << ", byte " << i;
-        }
-    }
-}
-
-TEST(MemoryStore, DiesInTheMiddleOfAChangeAndAnswersNothingAfterIt) {
-    MemoryStore store;
-    ASSERT_TRUE(store.create("f").ok());
-    store.dieAfter(1);
-    EXPECT_TRUE(store.append("f", bytesOf("abc")).ok());
-    EXPECT_TRUE(store.read("f").ok());
-    EXPECT_FALSE(store.append("f", bytesOf("defghi")).ok());
-    EXPECT_FALSE(store.read("f").ok());
-    EXPECT_FALSE(store.list().ok());
-    EXPECT_FALSE(store.replace("g", {}).ok());
-    store.revive();
-    EXPECT_GE(store.read("f")->size(), 3u);
-    EXPECT_LE(store.read("f")->size(), 9u);
-}
-
 }  // namespace
 }  // namespace huestep::protocol

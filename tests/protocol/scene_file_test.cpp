@@ -333,6 +333,7 @@ TEST(SceneFile, BadDocumentsAreRefusedWithTheirPath) {
          "players.body: must be an object, is a number"},
         {R"({"version": 1, "players": {"spawnPoints": [{"x": 0, "y": 0}, {"x": 0}]}})",
          "players.spawnPoints[1].y: is missing"},
+        {R"({"version": 1, "name": "a\u0000b"})", "name: must be text without control characters"},
         {"", "the file is empty"},
     };
     for (const BadDocument& bad : table) EXPECT_EQ(refusalOf(bad.document), bad.sentence);

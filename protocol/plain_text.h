@@ -1,0 +1,11 @@
+/// Text from outside that may be logged, shown and quoted as it is.
+#pragma once
+
+#include <string_view>
+
+namespace huestep::protocol {
+
+/// Whether the bytes are UTF-8 (RFC 3629) without control characters (U+0000 to U+001F, U+007F).
+bool isPlainText(std::string_view text);
+
+}  // namespace huestep::protocol
