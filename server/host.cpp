@@ -101,6 +101,10 @@ void Host::Inside::initHandles() {
 }
 
 Host::Inside::~Inside() {
+    // If `run` never was: only the parts themselves can close what they opened.
+    if (!stopping) {
+        for (const auto& part : parts) part->stopping();
+    }
     writer.finish();
     sockets.stopListening();
     sockets.closeAll();

@@ -43,6 +43,11 @@ std::vector<Session*> Hub::sessions() {
     for (const auto& [name, session] : m_sessions) out.push_back(session.get());
     return out;
 }
+std::vector<const Session*> Hub::sessions() const {
+    std::vector<const Session*> out;
+    for (const auto& [name, session] : m_sessions) out.push_back(session.get());
+    return out;
+}
 
 const Session* Hub::find(const std::string& name) const {
     const auto found = m_sessions.find(name);

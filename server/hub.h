@@ -40,6 +40,7 @@ class Hub {
     /// Hosts one more session. The sentence says which limit or name stands against it.
     Result<Session*> add(SessionStart start, Instant now);
     [[nodiscard]] std::vector<Session*> sessions();
+    [[nodiscard]] std::vector<const Session*> sessions() const;
     [[nodiscard]] const Session* find(const std::string& name) const;
     [[nodiscard]] const Counters& counters() const { return m_context.counters; }
     [[nodiscard]] const Limits& limits() const { return m_context.limits; }

@@ -1,0 +1,31 @@
+# Writes OUT, a C++ source with the files of FOLDER as raw string literals.
+#
+# Text files only: the page has no binary files, and a literal that can be read in the debugger is
+# worth that rule. Run at build time, so that an edited file is embedded by the next build.
+file(GLOB files ${FOLDER}/*.html ${FOLDER}/*.css ${FOLDER}/*.js ${FOLDER}/*.svg)
+list(SORT files)
+set(types_html "text/html; charset=utf-8")
+set(types_css "text/css; charset=utf-8")
+set(types_js "text/javascript; charset=utf-8")
+set(types_svg "image/svg+xml")
+
+file(WRITE ${OUT}.new "// Made from client/web by server/web_assets.cmake.\n")
+file(APPEND ${OUT}.new "#include \"server/web_assets.h\"\n\n#include <algorithm>\n#include <array>\n\n")
+file(APPEND ${OUT}.new "namespace huestep::server {\n\nnamespace {\n\nusing namespace std::string_view_literals;\n\n")
+list(LENGTH files count)
+file(APPEND ${OUT}.new "const std::array<WebAsset, ${count}> assets{{\n")
+foreach(file ${files})
+  get_filename_component(name ${file} NAME)
+  get_filename_component(extension ${file} LAST_EXT)
+  string(SUBSTRING ${extension} 1 -1 extension)
+  file(READ ${file} text)
+  file(APPEND ${OUT}.new "    {\"${name}\"sv, \"${types_${extension}}\"sv, R\"huestepasset(")
+  file(APPEND ${OUT}.new "${text}")
+  file(APPEND ${OUT}.new ")huestepasset\"sv},\n")
+endforeach()
+file(APPEND ${OUT}.new "}};\n\n}  // namespace\n\n")
+file(APPEND ${OUT}.new "std::span<const WebAsset> webAssets() {\n    return assets;\n}\n\n")
+file(APPEND ${OUT}.new "const WebAsset* findWebAsset(std::string_view name) {\n    const auto at = std::lower_bound(\n        assets.begin(), assets.end(), name,\n        [](const WebAsset& asset, std::string_view wanted) { return asset.name < wanted; });\n    return at != assets.end() && at->name == name ? &*at : nullptr;\n}\n\n")
+file(APPEND ${OUT}.new "}  // namespace huestep::server\n")
+file(COPY_FILE ${OUT}.new ${OUT} ONLY_IF_DIFFERENT)
+file(REMOVE ${OUT}.new)

@@ -1,0 +1,80 @@
+/// The web endpoint: a page, and a WebSocket that sends what the page draws.
+///
+///     Result<std::shared_ptr<WebEndpoint>> web = WebEndpoint::open(*host, {"127.0.0.1:0"});
+///     if (!web) -> print web.error().message, exit 2
+///     std::cout << "page http://" << (*web)->address() << "/" << std::endl;   // then host->run()
+///
+/// HTTP and WebSockets are libwebsockets', on the host's libuv loop. `/` and the page's files are
+/// answered by server/web_route.h. `/view?session=NAME` is the WebSocket: every binary message is
+/// one frame of the protocol (protocol/frame.h) with a View; the viewer sends nothing, and is let
+/// go if it does. Nobody can play from here.
+///
+/// Limits: see `WebLimits`; beyond them a request is answered 429 or 503, a connection closed.
+/// Thread rule: the host's thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/result.h"
+#include "server/host.h"
+
+namespace huestep::server {
+
+struct WebLimits {
+    std::size_t connections = 256;
+    std::size_t viewers = 64;       ///< WebSockets among them, over all sessions
+    double requestsPerSecond = 20;  ///< token bucket an address (IPv6: a /64)
+    double requestBurst = 240;
+    double viewsPerSecond = 60;         ///< to each viewer; ticks beyond are left out
+    std::uint16_t headerBytes = 4096;   ///< of a request's head
+    std::uint16_t idleSeconds = 10;     ///< for a request's head, and between requests
+    std::uint16_t pingSeconds = 10;     ///< a viewer is pinged so often,
+    std::uint16_t silenceSeconds = 25;  ///< and let go after so long without an answer
+    int sendBufferBytes = 256 << 10;    ///< the kernel's share of a slow viewer's lag
+    std::uint64_t farewellMs = 200;     ///< for viewers to take their close when the host stops
+};
+
+struct WebConfig {
+    std::string listen = "127.0.0.1:0";  ///< HOST:PORT; port 0: any free one
+    WebLimits limits;
+    LogSink log;  ///< none: silent
+};
+
+/// What happened since the start, for the log and for tests.
+struct WebCounters {
+    std::uint64_t requests = 0;
+    std::uint64_t refusedConnections = 0;
+    std::uint64_t tooManyRequests = 0;
+    std::uint64_t viewersTotal = 0;
+    std::uint64_t refusedViewers = 0;
+    std::uint64_t viewsSent = 0;
+    std::uint64_t viewsDropped = 0;  ///< a newer one took their place
+    std::uint64_t bytesOut = 0;      ///< of views
+};
+
+class WebEndpoint : public HostPart {
+ public:
+    /// Binds the address and adds itself to the host. The sentence names the address.
+    static Result<std::shared_ptr<WebEndpoint>> open(Host& host, WebConfig config);
+    ~WebEndpoint() override;
+    WebEndpoint(const WebEndpoint&) = delete;
+    WebEndpoint& operator=(const WebEndpoint&) = delete;
+
+    /// HOST:PORT, the port as bound.
+    [[nodiscard]] const std::string& address() const;
+    [[nodiscard]] std::size_t viewers() const;
+    [[nodiscard]] const WebCounters& counters() const;
+
+    void afterTick(const Session& session) override;
+    void stopping() override;
+
+ private:
+    struct Inside;
+    explicit WebEndpoint(std::unique_ptr<Inside> inside);
+    std::unique_ptr<Inside> m_inside;
+};
+
+}  // namespace huestep::server
