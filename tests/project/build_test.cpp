@@ -1,0 +1,66 @@
+// What compilers were told and what they made of it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <regex>
+
+#include "tests/project/sources.h"
+
+namespace huestep::test {
+namespace {
+
+const std::filesystem::path build = HUESTEP_BINARY_DIR;
+
+/// Calls `f(line)` for every line of a command's output; says whether the command ended with 0.
+template <class F>
+bool forEachLineOf(const std::string& command, F f) {
+    std::FILE* pipe = ::popen(command.c_str(), "r");
+    if (pipe == nullptr) return false;
+    std::array<char, 4096> line{};
+    while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr)
+        f(std::string(line.data()));
+    return ::pclose(pipe) == 0;
+}
+
+TEST(MachineCode, OfTheCoreHoldsNoFusedMultiplyAdd) {
+    const std::string library = (build / "core" / "libhuestep_core.a").string();
+    // x86: vfmadd132ps and its kin; ARM: fmadd, fmsub, fnmadd, fmla, fmls and vfma.
+    const std::regex fused(R"(\b(vfn?m(add|sub)\w*|fn?m(add|sub)|fml[as]|vfm[as])\b)");
+    EXPECT_TRUE(std::regex_search("  c4 e2 vfmadd231ps %ymm1,%ymm2,%ymm3", fused));
+    int instructions = 0;
+    const bool ended = forEachLineOf("objdump -d --no-show-raw-insn '" + library + "' 2>/dev/null",
+                                     [&](const std::string& line) {
+                                         ++instructions;
+                                         EXPECT_FALSE(std::regex_search(line, fused)) << line;
+                                     });
+    EXPECT_TRUE(ended) << "objdump failed on " << library;
+    EXPECT_GT(instructions, 10'000) << "too few lines: was the library disassembled?";
+}
+
+TEST(Flags, EveryFileIsCompiledWithoutContractionOrReordering) {
+    int commands = 0;
+    for (const std::string& line : linesOf(textOf(build / "compile_commands.json"))) {
+        if (line.find("\"command\":") == std::string::npos) continue;
+        if (line.find(".cpp") == std::string::npos) continue;
+        ++commands;
+        EXPECT_NE(line.find("-ffp-contract=off"), std::string::npos) << line;
+        for (const char* bad : {"-ffast-math", "-Ofast", "-march=", "-mfma", "-mfpmath=387",
+                                "-funsafe-math-optimizations", "-ffp-contract=fast"})
+            EXPECT_EQ(line.find(bad), std::string::npos) << bad << " in " << line;
+    }
+    EXPECT_GT(commands, 50);
+}
+
+TEST(Floats, DenormalsAreOnAtStart) {
+    volatile float smallest = std::numeric_limits<float>::min();
+    volatile float half = 0.5f;
+    volatile float denormal = smallest * half;
+    EXPECT_GT(denormal, 0.0f);
+    volatile float again = denormal + denormal;
+    EXPECT_EQ(again, smallest);
+}
+
+}  // namespace
+}  // namespace huestep::test
