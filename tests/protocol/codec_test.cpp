@@ -235,6 +235,18 @@ TEST(Codec, ListsThatOverlapCannotMakeMoreThanTheirBytesAreWorth) {
     ASSERT_FALSE(result.ok());
 }
 
+TEST(Codec, StructsCutShortCannotMakeMoreThanTheirBytesAreWorth) {
+    // Commands of one word each, as no form of the schema ever had them, would grow to many times
+    // their bytes in memory.
+    constexpr std::uint64_t count = 4'000;
+    std::vector<std::uint64_t> words(7 + count);
+    words[0] = std::uint64_t{3} << 32 | std::uint64_t{2} << 48;        // root: 3 words, 2 pointers
+    words[4] = 1u | (1u << 2) | std::uint64_t{7} << 32 | count << 35;  // list at word 6, composite
+    words[6] = count << 2 | std::uint64_t{1} << 32;                    // tag: one word each
+    EXPECT_EQ(reasonOf(decode(MessageType::Frame, std::as_bytes(std::span(words)))),
+              "Frame.commands: more values than the message has bytes for");
+}
+
 // ---- limits: the last value allowed is accepted, the next is refused by name --------------------
 
 TEST(CodecLimits, SessionNames) {
