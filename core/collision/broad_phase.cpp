@@ -12,6 +12,7 @@ constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits
 constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
 constexpr std::uint32_t joinGrain = 256;
+constexpr float farthestTravel = 1000.0f;  // m: no fat box may outgrow the widest cell
 
 float cellSize(int level) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(level + 127) << 23);
@@ -49,8 +50,10 @@ Bounds fattened(const Bounds& tight, Vec2 travel) {
     const float size = maxOf(tight.high.x - tight.low.x, tight.high.y - tight.low.y);
     const float margin = minOf(0.1f, 0.01f + 0.05f * size);
     Bounds fat = grown(tight, margin);
-    (travel.x < 0 ? fat.low.x : fat.high.x) += travel.x;
-    (travel.y < 0 ? fat.low.y : fat.high.y) += travel.y;
+    const float x = clampTo(travel.x, -farthestTravel, farthestTravel);
+    const float y = clampTo(travel.y, -farthestTravel, farthestTravel);
+    (x < 0 ? fat.low.x : fat.high.x) += x;
+    (y < 0 ? fat.low.y : fat.high.y) += y;
     return fat;
 }
 

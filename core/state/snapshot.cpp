@@ -134,8 +134,9 @@ Result<WorldState> readSnapshot(std::span<const std::byte> bytes) {
     });
     if (!problem.empty()) return Error{problem};
     if (bytes.size() != end + pieces(end) * 8 + 8) {
-        return Error{"snapshot: " + number(bytes.size()) + " bytes instead of the " +
-                     number(end + pieces(end) * 8 + 8) + " that its header asks for"};
+        return Error{"snapshot: the table at offset 16 asks for " +
+                     number(end + pieces(end) * 8 + 8) + " bytes; there are " +
+                     number(bytes.size())};
     }
     if (const Status intact = checkPieces(bytes, end); !intact) return intact.error();
 

@@ -80,10 +80,20 @@ std::string badInfo(const WorldInfo& w) {
     return {};
 }
 
+// A centre of mass may be farther out than its body's origin, by the extent of the shapes.
+constexpr float farthestCenter = maxCoordinate + 2.0f * caps::maxExtent;
+constexpr float maxMass = 1.0e20f;  // kg; far above that of any definition
+
 std::string badMotion(const BodyMotion& m) {
     if (!unit(m.rotation)) return "rotation: not a unit vector";
-    if (!within(m.position.x, -maxCoordinate, maxCoordinate)) return "position.x: out of range";
-    if (!within(m.position.y, -maxCoordinate, maxCoordinate)) return "position.y: out of range";
+    if (!within(m.position.x, -farthestCenter, farthestCenter)) return "position.x: out of range";
+    if (!within(m.position.y, -farthestCenter, farthestCenter)) return "position.y: out of range";
+    return {};
+}
+
+std::string badSpawnPoint(const SpawnPoint& p) {
+    if (!within(p.position.x, -maxCoordinate, maxCoordinate)) return "position.x: out of range";
+    if (!within(p.position.y, -maxCoordinate, maxCoordinate)) return "position.y: out of range";
     return {};
 }
 
@@ -92,6 +102,11 @@ std::string badBody(const BodyInfo& b) {
     if (b.flags > 15) return "flags: unknown bits";
     if (b.dynamic() != (b.inverseMass > 0.0f)) return "inverseMass: does not fit the type";
     if (b.mass < 0 || b.inertia < 0 || b.inverseInertia < 0) return "mass: negative";
+    if (b.mass > maxMass) return "mass: out of range";
+    if (!within(b.localCenter.x, -caps::maxExtent, caps::maxExtent) ||
+        !within(b.localCenter.y, -caps::maxExtent, caps::maxExtent)) {
+        return "localCenter: out of range";
+    }
     if (!b.dynamic() && b.inverseInertia != 0) return "inverseInertia: does not fit the type";
     if (!within(b.linearDamping, 0, 1000)) return "linearDamping: out of range";
     if (!within(b.angularDamping, 0, 1000)) return "angularDamping: out of range";
@@ -121,6 +136,11 @@ std::string badShape(const ShapeInfo& s) {
     if (!within(s.friction, 0, 100)) return "friction: out of range";
     if (!within(s.restitution, 0, 1)) return "restitution: out of range";
     if (!within(s.rollingResistance, 0, 100)) return "rollingResistance: out of range";
+    for (const Vec2 v :
+         s.vertices) {  // from the centre of mass: twice what is allowed from the origin
+        const float most = 2.0f * caps::maxExtent;
+        if (!within(v.x, -most, most) || !within(v.y, -most, most)) return "vertices: out of range";
+    }
     const auto hull = hullOf<float>(s);
     for (int i = 0; n > 1 && i < n; ++i) {
         const auto here = static_cast<std::size_t>(i);
@@ -171,11 +191,14 @@ std::string badReferences(const WorldState& s) {
 
 std::string badPlayers(const WorldState& s) {
     if (s.players.empty() || s.players.front().id != 0) return "player 0: the host is missing";
-    for (std::size_t i = 1; i < s.players.size(); ++i) {
+    for (std::size_t i = 0; i < s.players.size(); ++i) {
         const PlayerRecord& p = s.players[i];
-        if (p.id <= s.players[i - 1].id) return nth("player", i) + " id: ids must rise";
+        if (i > 0 && p.id <= s.players[i - 1].id) return nth("player", i) + " id: ids must rise";
         if (p.body != 0 && !findById(s.bodies, p.body)) return nth("player", i) + " body: none";
-        if (p.grab != 0 && !findById(s.joints, p.grab)) return nth("player", i) + " grab: none";
+        if (p.grab == 0) continue;
+        const JointInfo* held = findById(s.joints, p.grab);
+        if (!held) return nth("player", i) + " grab: none";
+        if (held->owner != p.id) return nth("player", i) + " grab: another's";
     }
     return {};
 }
@@ -209,6 +232,7 @@ std::string badState(const WorldState& s) {
     if (bad.empty()) bad = firstBad("playerBody", s.playerBody, badBody);
     if (bad.empty()) bad = firstBad("playerMotion", s.playerMotion, badMotion);
     if (bad.empty()) bad = firstBad("playerShape", s.playerShapes, badShape);
+    if (bad.empty()) bad = firstBad("spawnPoint", s.spawnPoints, badSpawnPoint);
     if (bad.empty()) bad = badReferences(s);
     if (bad.empty()) bad = badPlayers(s);
     return bad;

@@ -162,7 +162,7 @@ class Applier {
                 return apply(MoveGrab{action.target});
             }
         }
-        if (m_state.joints.size() >= m_state.info().maxJoints) return Rejection::OverLimit;
+        if (!roomFor(0, 0, 1)) return Rejection::OverLimit;
         if (author().grab != 0) markJoint(author().grab);
         m_world.contactsToState();
         const BodyMotion& motion = m_state.motions[place];

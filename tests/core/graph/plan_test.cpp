@@ -1,0 +1,164 @@
+// The plan: every link once, islands whole, lanes disjoint, whatever the size of a batch.
+
+#include "core/graph/plan.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "tests/core/support.h"
+
+namespace huestep::test {
+namespace {
+
+/// Bodies of all kinds with links that could be a world's: at least one end moves.
+struct Case {
+    std::vector<std::uint8_t> moves, kinematic;
+    std::vector<Link> links;
+    std::uint32_t jointLinks = 0;
+    std::vector<std::uint32_t> awake;
+};
+
+Case randomCase(Random& random) {
+    Case c;
+    const std::uint32_t bodies = 2 + random.below(400);
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        const bool kinematic = random.once(20);
+        c.kinematic.push_back(kinematic);
+        c.moves.push_back(!kinematic && !random.once(8));
+        if (c.moves.back()) c.awake.push_back(i);
+    }
+    // Near neighbours are linked, so that islands of all sizes come out.
+    const std::uint32_t reach = 1 + random.below(6);
+    const std::uint32_t wanted = random.below(bodies * 3);
+    for (std::uint32_t i = 0; i < wanted; ++i) {
+        const std::uint32_t a = random.below(bodies);
+        const std::uint32_t b = (a + 1 + random.below(reach)) % bodies;
+        if (a == b || (!c.moves[a] && !c.moves[b])) continue;
+        c.links.push_back({a, b, 0});
+    }
+    c.jointLinks = c.links.empty() ? 0 : random.below(c.links.size());
+    for (std::uint32_t i = 0; i < c.links.size(); ++i) {
+        c.links[i].source = i < c.jointLinks ? i : i - c.jointLinks;
+    }
+    return c;
+}
+
+Plan planOf(const Case& c, std::uint32_t batchSize) {
+    Plan plan;
+    makePlan(plan, std::vector<Link>(c.links), c.jointLinks, std::vector<std::uint32_t>(c.awake),
+             {c.moves, c.kinematic}, batchSize);
+    return plan;
+}
+
+/// Checks one lane or joint of a run: its places lead to the bodies of its link.
+void expectPlaces(const Case& c, const Plan& plan, const Batch& batch, const Link& link,
+                  const ConstraintBodies& places) {
+    const std::pair<std::uint32_t, BodyPlace> ends[] = {{link.a, places.a}, {link.b, places.b}};
+    for (const auto& [body, place] : ends) {
+        ASSERT_EQ(place >= 0, c.moves[body] != 0) << "only what moves is written";
+        const auto at = static_cast<std::uint32_t>(readPlace(place));
+        if (!c.moves[body] && !c.kinematic[body]) {
+            ASSERT_EQ(place, fixedWorld);
+            continue;
+        }
+        ASSERT_EQ(plan.bodyOfPlace[at], body);
+        ASSERT_GE(at, batch.firstPlace);
+        ASSERT_LT(at, batch.endPlace) << "batches share no place";
+    }
+}
+
+void expectSound(const Case& c, const Plan& plan) {
+    std::vector<int> jointSeen(c.jointLinks), contactSeen(c.links.size() - c.jointLinks);
+    std::map<std::uint32_t, std::size_t> batchOfIsland;
+    std::vector<int> placed(c.moves.size());
+    for (std::size_t k = 0; k < plan.batches.size(); ++k) {
+        const Batch& batch = plan.batches[k];
+        for (std::uint32_t p = batch.firstPlace; p < batch.endPlace; ++p) {
+            placed[plan.bodyOfPlace[p]] += c.moves[plan.bodyOfPlace[p]];
+        }
+        std::uint32_t inBatch = 0;
+        int lastColour = -1;
+        for (std::uint32_t r = batch.firstColour; r < batch.endColour; ++r) {
+            const ColourRun& run = plan.runs[r];
+            ASSERT_GT(static_cast<int>(run.colour), lastColour) << "in solving order";
+            lastColour = run.colour;
+            inBatch += run.contactCount + run.jointCount;
+            std::set<BodyPlace> written;
+            std::uint32_t lastLink = 0;
+            const auto visit = [&](std::uint32_t linkIndex, const ConstraintBodies& places) {
+                const Link& link = c.links[linkIndex];
+                ASSERT_GE(linkIndex, lastLink) << "in key order within a colour";
+                lastLink = linkIndex;
+                ASSERT_EQ(plan.colourOfLink[linkIndex], run.colour);
+                expectPlaces(c, plan, batch, link, places);
+                const std::uint32_t island = plan.islandOf[c.moves[link.a] ? link.a : link.b];
+                ASSERT_EQ(batchOfIsland.try_emplace(island, k).first->second, k)
+                    << "island " << island << " is split";
+                for (const BodyPlace place : {places.a, places.b}) {
+                    if (place < 0 || run.colour == overflowColour) continue;
+                    ASSERT_TRUE(written.insert(place).second) << "two lanes write one body";
+                }
+            };
+            for (std::uint32_t i = 0; i < run.jointCount; ++i) {
+                const std::uint32_t joint = plan.jointOrder[run.firstJoint + i];
+                ++jointSeen[joint];
+                visit(joint, plan.jointPlaces[run.firstJoint + i]);
+            }
+            const std::uint32_t lanes =
+                (run.contactCount + blockLanes - 1) / blockLanes * blockLanes;
+            for (std::uint32_t i = 0; i < lanes; ++i) {
+                const std::uint32_t contact = plan.contactOfLane[run.firstBlock * blockLanes + i];
+                ASSERT_EQ(contact == none, i >= run.contactCount) << "padding comes last";
+                if (contact == none) continue;
+                ++contactSeen[contact];
+                visit(contact + c.jointLinks, plan.lanePlaces[run.firstBlock * blockLanes + i]);
+            }
+            if (testing::Test::HasFatalFailure()) return;
+        }
+        ASSERT_EQ(inBatch, batch.constraints);
+    }
+    for (const int seen : jointSeen) ASSERT_EQ(seen, 1);
+    for (const int seen : contactSeen) ASSERT_EQ(seen, 1);
+    for (const std::uint32_t body : plan.freeBodies) ++placed[body];
+    for (std::size_t body = 0; body < placed.size(); ++body) {
+        ASSERT_EQ(placed[body], c.moves[body] ? 1 : 0) << "body " << body;
+    }
+}
+
+TEST(Plan, HoldsEveryLinkAndBodyOnceAndKeepsIslandsWholeForAnySizeOfBatch) {
+    Random random(84);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 60 && !HasFatalFailure(); ++trial) {
+        const Case c = randomCase(random);
+        const Plan standard = planOf(c, standardBatchSize);
+        for (const std::uint32_t batchSize : {1u, 7u, 64u, standardBatchSize, 100'000u}) {
+            SCOPED_TRACE("batches of " + std::to_string(batchSize));
+            const Plan plan = planOf(c, batchSize);
+            expectSound(c, plan);
+            if (HasFatalFailure()) return;
+            EXPECT_EQ(plan.colourOfLink, standard.colourOfLink)
+                << "a colour does not depend on the batch";
+            EXPECT_EQ(plan.islandOf, standard.islandOf);
+            EXPECT_EQ(plan.islands, standard.islands);
+            for (const Batch& batch : plan.batches) {
+                EXPECT_EQ(batch.giant, batch.constraints > batchSize);
+            }
+        }
+    }
+}
+
+TEST(Plan, OfNothingIsEmptyAndOfFreeBodiesHasNoBatch) {
+    Case c;
+    EXPECT_TRUE(planOf(c, 64).batches.empty());
+    c.moves = {1, 0, 1};
+    c.kinematic = {0, 1, 0};
+    c.awake = {0, 2};
+    const Plan plan = planOf(c, 64);
+    EXPECT_TRUE(plan.batches.empty());
+    EXPECT_EQ(plan.freeBodies, c.awake);
+    EXPECT_EQ(plan.islands, 0u);
+}
+
+}  // namespace
+}  // namespace huestep::test

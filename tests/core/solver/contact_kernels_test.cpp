@@ -1,0 +1,240 @@
+// The contact passes: the same bits for every width, and the physics of one row.
+
+#include "core/solver/contact_kernels.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "tests/core/support.h"
+
+namespace huestep::test {
+namespace {
+
+/// Blocks of contacts that share no written body, in any lane, the last one padded.
+struct Rows {
+    std::vector<SolverBody> bodies;
+    std::vector<ContactBlock> blocks;
+    std::uint32_t count = 0;
+};
+
+float orZero(Random& random, double low, double high) {
+    if (random.once(8)) return random.once(2) ? 0.0f : -0.0f;
+    return random.betweenF(low, high);
+}
+
+Rows randomRows(Random& random) {
+    Rows rows;
+    rows.count = 1 + random.below(80);
+    rows.bodies.resize(1 + 2 * rows.count + 4);  // the world, two a contact, a few kinematic
+    for (std::size_t i = 1; i < rows.bodies.size(); ++i) {
+        SolverBody& b = rows.bodies[i];
+        b.vx = orZero(random, -5.0, 5.0);
+        b.vy = orZero(random, -5.0, 5.0);
+        b.w = orZero(random, -5.0, 5.0);
+        b.dx = orZero(random, -0.1, 0.1);
+        b.dy = orZero(random, -0.1, 0.1);
+        const double angle = random.between(-0.2, 0.2);
+        b.dc = static_cast<float>(std::cos(angle));
+        b.ds = static_cast<float>(std::sin(angle));
+    }
+    std::vector<BodyPlace> own;
+    for (std::uint32_t i = 0; i < 2 * rows.count; ++i) own.push_back(static_cast<BodyPlace>(i + 1));
+    for (std::size_t i = own.size(); i > 1; --i) std::swap(own[i - 1], own[random.below(i)]);
+
+    rows.blocks.resize((rows.count + blockLanes - 1) / blockLanes);
+    for (ContactBlock& block : rows.blocks) {
+        std::memset(static_cast<void*>(&block), 0, sizeof block);
+        std::fill(block.bodyA, block.bodyA + blockLanes, fixedWorld);
+        std::fill(block.bodyB, block.bodyB + blockLanes, fixedWorld);
+    }
+    for (std::uint32_t i = 0; i < rows.count; ++i) {
+        ContactBlock& block = rows.blocks[i / blockLanes];
+        const std::uint32_t lane = i % blockLanes;
+        block.bodyA[lane] = own[2 * i];
+        block.bodyB[lane] = own[2 * i + 1];
+        const bool still = random.once(3);
+        const auto kinematic = static_cast<BodyPlace>(1 + 2 * rows.count + random.below(4));
+        if (still)
+            (random.once(2) ? block.bodyA : block.bodyB)[lane] =
+                random.once(2) ? fixedWorld : ~kinematic;
+        const auto inverse = [&](BodyPlace p) { return p < 0 ? 0.0f : random.betweenF(0.1, 4.0); };
+        block.inverseMassA[lane] = inverse(block.bodyA[lane]);
+        block.inverseInertiaA[lane] = inverse(block.bodyA[lane]);
+        block.inverseMassB[lane] = inverse(block.bodyB[lane]);
+        block.inverseInertiaB[lane] = random.once(4) ? 0.0f : inverse(block.bodyB[lane]);
+        const double angle = random.between(-3.1, 3.1);
+        block.normalX[lane] = static_cast<float>(std::cos(angle));
+        block.normalY[lane] = static_cast<float>(std::sin(angle));
+        block.friction[lane] = orZero(random, 0.0, 1.5);
+        block.restitution[lane] = orZero(random, 0.0, 1.0);
+        block.tangentSpeed[lane] = orZero(random, -2.0, 2.0);
+        block.rollingResistance[lane] = orZero(random, 0.0, 0.2);
+        block.rollingMass[lane] = random.betweenF(0.1, 2.0);
+        block.rollingImpulse[lane] = orZero(random, -0.1, 0.1);
+        for (ContactPointRows& p : block.points) {
+            if (&p == &block.points[1] && random.once(3)) continue;  // a single point
+            p.anchorAx[lane] = orZero(random, -1.0, 1.0);
+            p.anchorAy[lane] = orZero(random, -1.0, 1.0);
+            p.anchorBx[lane] = orZero(random, -1.0, 1.0);
+            p.anchorBy[lane] = orZero(random, -1.0, 1.0);
+            p.separation[lane] = orZero(random, -0.05, 0.02);
+            p.normalMass[lane] = random.betweenF(0.1, 2.0);
+            p.tangentMass[lane] = random.betweenF(0.1, 2.0);
+            p.normalImpulse[lane] = std::max(orZero(random, -0.5, 1.0), 0.0f);
+            p.tangentImpulse[lane] = orZero(random, -0.3, 0.3);
+            p.maxNormalImpulse[lane] = p.normalImpulse[lane];
+            p.approach[lane] = orZero(random, -5.0, 2.0);
+        }
+    }
+    return rows;
+}
+
+/// A whole substep and a bounce.
+void runAll(Rows& rows, const ContactKernels& kernels, const ContactPass& pass) {
+    for (const ContactKernel kernel :
+         {kernels.warmStart, kernels.solve, kernels.relax, kernels.restitute}) {
+        kernel(rows.bodies.data(), rows.blocks.data(), rows.count, pass);
+    }
+}
+
+ContactPass passOf(Random& random) {
+    ContactPass pass;
+    const float h = 1.0f / 240.0f;
+    pass.soft = softness(30.0f, 10.0f, h);
+    pass.inverseH = 240.0f;
+    pass.pushSpeed = 3.0f;
+    pass.features = {random.once(2), random.once(2), random.once(2), random.once(2)};
+    return pass;
+}
+
+TEST(ContactKernels, OfEveryWidthGiveTheBitsOfTheScalarOnes) {
+    Random random(111);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 400; ++trial) {
+        const Rows start = randomRows(random);
+        const ContactPass pass = passOf(random);
+        Rows scalar = start;
+        runAll(scalar, contactKernels(Simd::Scalar), pass);
+        for (const Simd simd : availableSimd()) {
+            Rows wideRows = start;
+            runAll(wideRows, contactKernels(simd), pass);
+            for (std::size_t i = 0; i < scalar.bodies.size(); ++i) {
+                ASSERT_EQ(std::memcmp(&wideRows.bodies[i], &scalar.bodies[i], sizeof(SolverBody)),
+                          0)
+                    << nameOf(simd) << ", body " << i << ", trial " << trial;
+            }
+            for (std::size_t i = 0; i < scalar.blocks.size(); ++i) {
+                const ContactBlock& a = wideRows.blocks[i];
+                const ContactBlock& b = scalar.blocks[i];
+                for (std::size_t k = 0; k < 2; ++k) {
+                    for (std::size_t lane = 0; lane < blockLanes; ++lane) {
+                        if (i * blockLanes + lane >= start.count) break;  // padding is nobody's
+                        const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
+                        ASSERT_EQ(bits(a.points[k].normalImpulse[lane]),
+                                  bits(b.points[k].normalImpulse[lane]));
+                        ASSERT_EQ(bits(a.points[k].tangentImpulse[lane]),
+                                  bits(b.points[k].tangentImpulse[lane]));
+                        ASSERT_EQ(bits(a.points[k].maxNormalImpulse[lane]),
+                                  bits(b.points[k].maxNormalImpulse[lane]));
+                        ASSERT_EQ(bits(a.rollingImpulse[lane]), bits(b.rollingImpulse[lane]));
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(ContactKernels, NeverWriteTheWorldNorKinematicBodiesNorPositions) {
+    Random random(112);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 100; ++trial) {
+        const Rows start = randomRows(random);
+        for (const Simd simd : availableSimd()) {
+            Rows rows = start;
+            runAll(rows, contactKernels(simd), passOf(random));
+            for (std::size_t i = 0; i < rows.bodies.size(); ++i) {
+                const SolverBody& a = rows.bodies[i];
+                const SolverBody& b = start.bodies[i];
+                ASSERT_TRUE(a.dx == b.dx && a.dy == b.dy && a.dc == b.dc && a.ds == b.ds);
+                if (i != 0 && i < 1 + 2 * start.count) continue;
+                ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0) << nameOf(simd) << ", body " << i;
+            }
+        }
+    }
+}
+
+TEST(ContactKernels, KeepImpulsesWithinTheirCones) {
+    Random random(113);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 200; ++trial) {
+        Rows rows = randomRows(random);
+        ContactPass pass = passOf(random);
+        pass.features = {true, true, true, false};
+        const ContactKernels& kernels = contactKernels(Simd::Auto);
+        kernels.warmStart(rows.bodies.data(), rows.blocks.data(), rows.count, pass);
+        kernels.solve(rows.bodies.data(), rows.blocks.data(), rows.count, pass);
+        kernels.relax(rows.bodies.data(), rows.blocks.data(), rows.count, pass);
+        for (std::uint32_t i = 0; i < rows.count; ++i) {
+            const ContactBlock& block = rows.blocks[i / blockLanes];
+            const std::uint32_t lane = i % blockLanes;
+            float load = 0.0f;
+            for (const ContactPointRows& p : block.points) {
+                ASSERT_GE(p.normalImpulse[lane], 0.0f);
+                ASSERT_GE(p.maxNormalImpulse[lane], p.normalImpulse[lane]);
+                ASSERT_LE(std::abs(p.tangentImpulse[lane]),
+                          block.friction[lane] * p.normalImpulse[lane]);
+                load += p.normalImpulse[lane];
+            }
+            ASSERT_LE(std::abs(block.rollingImpulse[lane]),
+                      block.rollingResistance[lane] * load * 1.000001f);
+        }
+    }
+}
+
+TEST(ContactKernels, OneRowStopsTwoDiscsAsAnInelasticCollisionDoesAndRestitutionBouncesThem) {
+    Rows rows;
+    rows.count = 1;
+    rows.bodies.resize(3);
+    rows.blocks.resize(1);
+    ContactBlock& block = rows.blocks[0];
+    std::memset(static_cast<void*>(&block), 0, sizeof block);
+    std::fill(block.bodyA, block.bodyA + blockLanes, fixedWorld);
+    std::fill(block.bodyB, block.bodyB + blockLanes, fixedWorld);
+    rows.bodies[1].vx = 3.0f;   // 2 kg
+    rows.bodies[2].vx = -1.0f;  // 0.5 kg
+    block.bodyA[0] = 1;
+    block.bodyB[0] = 2;
+    block.inverseMassA[0] = 0.5f;
+    block.inverseMassB[0] = 2.0f;
+    block.normalX[0] = 1.0f;
+    block.restitution[0] = 0.5f;
+    block.points[0].normalMass[0] = 1.0f / 2.5f;
+    block.points[0].approach[0] = -4.0f;
+    ContactPass pass;
+    pass.soft = softness(30.0f, 10.0f, 1.0f / 240.0f);
+    pass.inverseH = 240.0f;
+    pass.pushSpeed = 3.0f;
+    pass.features.restitution = true;
+    const ContactKernels& kernels = contactKernels(Simd::Scalar);
+    kernels.relax(rows.bodies.data(), rows.blocks.data(), 1, pass);
+    const double common = (2.0 * 3.0 - 0.5) / 2.5;
+    EXPECT_NEAR(wide(rows.bodies[1].vx), common, 1e-6);
+    EXPECT_NEAR(wide(rows.bodies[2].vx), common, 1e-6);
+    kernels.restitute(rows.bodies.data(), rows.blocks.data(), 1, pass);
+    EXPECT_NEAR(wide(rows.bodies[2].vx - rows.bodies[1].vx), 0.5 * 4.0, 1e-5);
+    EXPECT_NEAR(2.0 * wide(rows.bodies[1].vx) + 0.5 * wide(rows.bodies[2].vx), 5.5, 1e-5);
+}
+
+TEST(Simd, NamesReadBackAndScalarIsAlwaysThere) {
+    const std::vector<Simd> all = availableSimd();
+    ASSERT_FALSE(all.empty());
+    EXPECT_EQ(all.front(), Simd::Scalar);
+    for (const Simd simd : all) EXPECT_EQ(simdFromName(nameOf(simd)), simd);
+    EXPECT_EQ(simdFromName("auto"), Simd::Auto);
+    EXPECT_FALSE(simdFromName("mmx"));
+}
+
+}  // namespace
+}  // namespace huestep::test

@@ -1,0 +1,64 @@
+// The list of fields: it covers every record to the last byte, and names no field twice.
+
+#include "core/state/records.h"
+
+#include <cstring>
+#include <set>
+
+#include "core/state/state.h"
+#include "tests/core/support.h"
+
+namespace huestep::test {
+namespace {
+
+TEST(Records, AreTiledByTheirFieldsWithoutGapOrOverlap) {
+    WorldState state;
+    std::size_t arrays = 0;
+    forEachArray(state, [&](std::string_view name, const auto& array) {
+        using Record = typename std::remove_cvref_t<decltype(array)>::value_type;
+        ++arrays;
+        std::vector<int> covered(sizeof(Record), 0);
+        std::set<std::string> names;
+        for (const Field& field : fieldsOf<Record>) {
+            EXPECT_TRUE(names.insert(field.name).second) << name << " " << field.name;
+            for (std::uint32_t k = 0; k < field.count * sizeOf(field.type); ++k) {
+                ASSERT_LT(field.offset + k, sizeof(Record));
+                ++covered[field.offset + k];
+            }
+        }
+        for (std::size_t i = 0; i < covered.size(); ++i) EXPECT_EQ(covered[i], 1) << name << i;
+        EXPECT_TRUE(std::is_trivially_copyable_v<Record>);
+    });
+    EXPECT_EQ(arrays, 12u);
+}
+
+TEST(Records, StayWithinTheBytesThatTheDesignAllows) {
+    EXPECT_LE(sizeof(BodyMotion), 64u) << "a body, definitions apart";
+    EXPECT_LE(sizeof(ContactState), 48u) << "a touching contact";
+    EXPECT_LE(sizeof(JointImpulses), 32u) << "a joint, definitions apart";
+}
+
+TEST(Records, FieldsStandWhereTheirMembersAre) {
+    BodyMotion m{};
+    m.angularVelocity = 3.5f;
+    m.rest = 17;
+    const auto* bytes = reinterpret_cast<const char*>(&m);
+    for (const Field& field : fieldsOf<BodyMotion>) {
+        float f;
+        std::uint32_t u;
+        std::memcpy(&f, bytes + field.offset, 4);
+        std::memcpy(&u, bytes + field.offset, 4);
+        if (std::string(field.name) == "angularVelocity") {
+            EXPECT_EQ(f, 3.5f);
+        }
+        if (std::string(field.name) == "rest") {
+            EXPECT_EQ(u, 17u);
+        }
+    }
+    EXPECT_FALSE(m.asleep());
+    m.rest |= BodyMotion::asleepBit;
+    EXPECT_TRUE(m.asleep());
+}
+
+}  // namespace
+}  // namespace huestep::test
