@@ -68,9 +68,9 @@ export class Painter {
     };
   }
 
-  /** @param {import('./view.js').Shapes} shapes */
+  /** @param {import('./view.js').Shapes | null} shapes null: an empty world's */
   define(shapes) {
-    this.outlines = outlinesOf(shapes);
+    this.outlines = shapes ? outlinesOf(shapes) : [];
   }
 
   resize() {

@@ -15,9 +15,9 @@ function span(className, text) {
 }
 
 export class Legend {
-  /** @param {HTMLElement} bodies @param {HTMLElement} contacts */
-  constructor(bodies, contacts) {
-    this.contacts = contacts;
+  /** @param {HTMLElement} bodies @param {HTMLElement} moving contacts between moving bodies @param {HTMLElement} fixed and with others */
+  constructor(bodies, moving, fixed) {
+    this.lists = [moving, fixed, moving];
     this.lookCounts = looks.map((look) => this.entry(bodies, `body ${look}`, words[look], look));
     /** Entries come when their colour is first seen, and stay. @type {Map<string, {item: HTMLElement, count: HTMLElement}>} */
     this.colours = new Map();
@@ -41,10 +41,11 @@ export class Legend {
     const name = kind === 2 ? 'overflow' : `${place}${place === paletteSize - 1 ? '+' : ''}`;
     const what = ['between moving bodies', 'with a fixed or driven body', 'without a colour'][kind];
     const swatch = kind === 2 ? 'dot overflow' : `${kind === 1 ? 'ring' : 'dot'} c${place}`;
-    const made = this.entry(this.contacts, swatch, name, `contacts ${what}, graph colour ${name}`);
+    const made = this.entry(this.lists[kind], swatch, name, `contacts ${what}, graph colour ${name}`);
     this.colours.set(key, made);
     for (const each of [...this.colours.keys()].sort(compareKeys)) {
-      this.contacts.append(/** @type {{item: HTMLElement}} */ (this.colours.get(each)).item);
+      const { item } = /** @type {{item: HTMLElement}} */ (this.colours.get(each));
+      item.parentElement?.append(item);
     }
     return made;
   }

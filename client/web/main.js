@@ -1,4 +1,4 @@
-/** The page of one session: frames come in, the newest is drawn at the screen's next turn. */
+/** The page of one session: frames come in, each is drawn at the screen's next turn. */
 import { Camera } from './camera.js';
 import { lookOf, looks, Painter } from './draw.js';
 import { Feed } from './feed.js';
@@ -21,10 +21,19 @@ const shown = {
   awake: byId('awake'), contacts: byId('contacts'), rate: byId('rate'),
 };
 
+/** @type {Feed | null} */
+let feed = null;
 /** @type {import('./view.js').View | null} */
 let newest = null;
+/**
+ * Frames on their way to the screen, oldest first. Two of them, so that two that come in one turn of
+ * the screen are shown in two, and an uneven network does not look like an uneven world.
+ * @type {import('./view.js').View[]}
+ */
+const waiting = [];
+const mostWaiting = 2;
 let paused = false;
-let undrawn = false;
+let turnAsked = false;
 let definitions = 0;
 let legendAt = 0;
 /** When the frames of the last second came, ms. @type {number[]} */
@@ -41,7 +50,7 @@ const huestep = {
   asleep: 0,
   contacts: 0,
   definitions: 0,
-  /** Frames that came, that were drawn, and that a newer one overtook before the screen's turn. */
+  /** Frames that came, that were drawn, and that newer ones overtook before the screen's turn. */
   received: 0,
   drawn: 0,
   overtaken: 0,
@@ -60,10 +69,11 @@ Object.assign(window, { huestep });
 
 const camera = new Camera(surface, () => redraw());
 const painter = new Painter(surface, camera);
-const legend = new Legend(byId('body-legend'), byId('contact-legend'));
+const legend = new Legend(byId('body-legend'), byId('moving-legend'), byId('fixed-legend'));
 
 function redraw() {
-  if (huestep.state !== 'broken') requestAnimationFrame(draw);
+  if (!turnAsked) requestAnimationFrame(draw);
+  turnAsked = true;
 }
 
 function fit() {
@@ -71,20 +81,6 @@ function fit() {
   const gap = Math.min(24, camera.width / 24);
   const foot = byId('foot').offsetHeight;
   camera.fit(boundsOf(painter.outlines, newest), { left: gap, right: gap, top: gap, bottom: gap + foot });
-}
-
-/** @param {import('./view.js').View} view @returns {boolean} whether the view can be drawn */
-function takeDefinitions(view) {
-  if (view.shapes || view.bodies === 0) {
-    const first = definitions === 0;
-    definitions = view.definitions;
-    if (view.shapes) painter.define(view.shapes);
-    if (first) {
-      newest = view;
-      fit();
-    }
-  }
-  return view.definitions === definitions;
 }
 
 /** @param {ArrayBuffer} frame */
@@ -95,9 +91,8 @@ function take(frame) {
   } catch (problem) {
     if (!(problem instanceof ViewError) && !(problem instanceof RangeError)) throw problem;
     huestep.badFrames += 1;
-    return feed.reject();
+    return feed?.reject();
   }
-  if (!takeDefinitions(view)) return;
   if (view.tick > huestep.tick + 1 && huestep.received > 0) huestep.missed += view.tick - huestep.tick - 1;
   huestep.received += 1;
   huestep.tick = view.tick;
@@ -105,11 +100,34 @@ function take(frame) {
   huestep.history.push({ tick: view.tick, root: view.root });
   if (huestep.history.length > remembered) huestep.history.shift();
   arrivals.push(performance.now());
-  if (paused) return;
-  if (undrawn) huestep.overtaken += 1;
+  waiting.push(view);
+  while (waiting.length > mostWaiting) {
+    inherit(/** @type {import('./view.js').View} */ (waiting.shift()), waiting[0]);
+    if (!paused) huestep.overtaken += 1;
+  }
+  if (!paused) redraw();
+}
+
+/** The server sends shapes once: a frame that is not shown leaves them to the next. @param {import('./view.js').View} from @param {import('./view.js').View} to */
+function inherit(from, to) {
+  if (!to.shapes && from.definitions === to.definitions) to.shapes = from.shapes;
+}
+
+/** Makes the next frame the newest on the screen. @returns {boolean} whether there was one */
+function advance() {
+  const view = paused ? undefined : waiting.shift();
+  if (!view) return false;
+  if (waiting.length > 0) redraw();
+  const first = definitions === 0;
+  if (view.shapes || view.bodies === 0) {
+    definitions = view.definitions;
+    painter.define(view.shapes);
+  }
+  // Poses without their shapes cannot be drawn; the server does not send any.
+  if (view.definitions !== definitions) return false;
   newest = view;
-  undrawn = true;
-  redraw();
+  if (first) fit();
+  return true;
 }
 
 /** @param {import('./view.js').View} view */
@@ -142,17 +160,15 @@ function showNumbers(view) {
 }
 
 function draw() {
-  if (undrawn && newest) {
-    undrawn = false;
-    huestep.drawn += 1;
-    const begin = performance.now();
-    showNumbers(newest);
-    painter.draw(newest);
-    huestep.drawMs.push(performance.now() - begin);
-    if (huestep.drawMs.length > remembered) huestep.drawMs.shift();
-  } else {
-    painter.draw(newest);
-  }
+  turnAsked = false;
+  const begin = performance.now();
+  const fresh = advance();
+  if (newest && fresh) showNumbers(newest);
+  painter.draw(newest);
+  if (!fresh) return;
+  huestep.drawn += 1;
+  huestep.drawMs.push(performance.now() - begin);
+  if (huestep.drawMs.length > remembered) huestep.drawMs.shift();
 }
 
 /** @param {string} state @param {string} sentence */
@@ -171,6 +187,7 @@ function pause() {
   button.setAttribute('aria-pressed', String(paused));
   button.textContent = paused ? 'Resume' : 'Pause';
   showState(huestep.state, huestep.state);
+  redraw();
 }
 
 function resize() {
@@ -212,4 +229,5 @@ window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () 
 });
 new ResizeObserver(resize).observe(surface);
 painter.resize();
-const feed = new Feed(session, take, showState);
+// Starts by itself, and tells its state before it is here.
+feed = new Feed(session, take, showState);

@@ -1,6 +1,7 @@
 /** A headless Chromium, and pages that keep what went wrong in them. */
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
+import { eventually } from './server.mjs';
 
 // The packages are installed in the build folder, so they are asked for from there.
 const { chromium } = createRequire(join(process.env.HUESTEP_NODE_MODULES ?? '.', 'x.js'))('playwright-core');
@@ -35,10 +36,10 @@ export async function openPage(browser, url, { size = desktop, scheme = 'light',
 
 export const state = (page) => page.evaluate(() => ({ ...window.huestep }));
 
-/** Waits until an expression of `window.huestep` holds in the page. */
-export const until = (page, expression, seconds = 90) =>
-  page.waitForFunction(`(() => { const h = window.huestep; return ${expression}; })()`, null,
-                       { timeout: 1000 * seconds });
+/** Waits until the page's state is as wanted. The page's own policy forbids to hand it code as text. */
+export const until = (page, wanted, seconds = 60) =>
+  eventually(`${wanted} of ${page.url()}; problems: ${page.problems}`,
+             async () => wanted(await state(page)), seconds);
 
 /** How many of the canvas's pixels have each of some colours of the style sheet, and how many colours there are. */
 export function pixels(page, names) {

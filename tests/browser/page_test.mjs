@@ -31,12 +31,12 @@ test('the page shows a session that is played, tick by tick, with the hashes of 
     server.play('sandbox', 4);
     const page = await openPage(browser, server.url);
     assert.match(page.url(), /\?session=sandbox$/, 'the only session is chosen by itself');
-    await until(page, 'h.players === 4 && h.contacts > 0 && h.drawn >= 120');
+    await until(page, (h) => h.players === 4 && h.contacts > 0 && h.drawn >= 120);
     const first = await state(page);
     assert.equal(await page.textContent('#state'), 'live');
     assert.match(await page.textContent('#root'), /^[0-9a-f]{16}$/);
     assert.ok(first.looks.player >= 4, 'players are marked');
-    await until(page, `h.tick >= ${first.tick + 60}`);
+    await until(page, (h) => h.tick >= first.tick + 60);
 
     const drawn = await pixels(page, ['canvas', 'awake-fill', 'player-fill', 'static-fill']);
     assert.ok(drawn.colours > 50, `the canvas has ${drawn.colours} colours`);
@@ -50,7 +50,7 @@ test('the page shows a session that is played, tick by tick, with the hashes of 
       'phone-dark': { size: phone, touch: true, scheme: 'dark' },
     })) {
       const other = await openPage(browser, server.url, how);
-      await until(other, 'h.drawn >= 30');
+      await until(other, (h) => h.drawn >= 30);
       const wide = await other.evaluate(() => document.documentElement.scrollWidth - innerWidth);
       assert.ok(wide <= 0, `${name} is ${wide} pixels wider than the screen`);
       await other.screenshot({ path: join(pictures, `${name}.png`) });
@@ -71,7 +71,7 @@ test('the page shows a session that is played, tick by tick, with the hashes of 
 test('a session without players shows the hashes of the same scene run without a network', () =>
   withServer({ pile: 'pyramid:base=6' }, async (server) => {
     const page = await openPage(browser, server.url);
-    await until(page, 'h.tick >= 200');
+    await until(page, (h) => h.tick >= 200);
     const { history } = await state(page);
     const run = ask('run', 'pyramid:base=6', '--ticks', String(history.at(-1).tick), '--hash-every', '1');
     const roots = new Map(run.hashes.map((each) => [each.tick, each.motion]));
@@ -80,39 +80,47 @@ test('a session without players shows the hashes of the same scene run without a
   }));
 
 test('sleeping bodies are dimmed', () =>
-  withServer({ pile: 'pyramid:base=5' }, async (server) => {
+  withServer({ pile: 'small:n=12' }, async (server) => {
     const page = await openPage(browser, server.url);
-    await until(page, 'h.drawn > 0 && h.asleep === 15');
-    await page.waitForTimeout(100);
-    const drawn = await pixels(page, ['awake-fill', 'asleep-fill']);
-    assert.ok(drawn['asleep-fill'] > 1000, `${drawn['asleep-fill']} pixels asleep`);
-    assert.equal(drawn['awake-fill'], 0, 'none awake');
-    assert.equal((await state(page)).contacts, 0, 'contacts of sleeping bodies are not drawn');
+    await until(page, (h) => h.looks.awake === 13);
+    const before = await pixels(page, ['awake-fill', 'asleep-fill']);
+    assert.equal(before['asleep-fill'], 0, 'none asleep');
+    await until(page, (h) => h.asleep === 12);  // the disc rolls on
+    const after = await pixels(page, ['awake-fill', 'asleep-fill']);
+    assert.ok(after['asleep-fill'] > 1000, `${after['asleep-fill']} pixels asleep`);
+    assert.ok(after['awake-fill'] < before['awake-fill'] / 4, `${after['awake-fill']} pixels awake`);
     await page.screenshot({ path: join(pictures, 'asleep.png') });
   }));
 
 test('frames of a scene of 1,000 bodies are drawn as they come', () =>
   withServer({ pile: 'pyramid:base=45' }, async (server) => {
     const page = await openPage(browser, server.url);
-    await until(page, 'h.received >= 60');
+    await until(page, (h) => h.received >= 60);
+    await page.evaluate(() => {
+      window.turns = 0;
+      const turn = () => { window.turns += 1; requestAnimationFrame(turn); };
+      requestAnimationFrame(turn);
+    });
     const before = await state(page);
-    await until(page, `h.received >= ${before.received + 300}`);
+    await until(page, (h) => h.received >= before.received + 300);
     const now = await state(page);
+    const turns = await page.evaluate(() => window.turns);
     assert.ok(now.bodies > 1000, `${now.bodies} bodies`);
     const received = now.received - before.received;
     const drawn = now.drawn - before.drawn;
     const sorted = now.drawMs.toSorted?.() ?? [...now.drawMs].sort((a, b) => a - b);
-    console.log(`${received} frames came, ${drawn} were drawn; median ${sorted[sorted.length >> 1]} ms each`);
-    assert.ok(Math.abs(received - drawn - (now.overtaken - before.overtaken)) <= 1, 'each frame is accounted for');
-    assert.ok(drawn >= 0.7 * received, `${drawn} of ${received} frames were drawn`);
-    assert.ok(received >= 0.7 * (now.tick - before.tick), `${received} frames came in ${now.tick - before.tick} ticks`);
+    console.log(`${received} frames came, ${drawn} were drawn in ${turns} turns of the screen; median ${sorted[sorted.length >> 1]} ms each`);
+    assert.ok(Math.abs(received - drawn - (now.overtaken - before.overtaken)) <= 2, 'each frame is accounted for');
+    // On a busy machine the screen has fewer turns than the session has ticks; none may be wasted.
+    assert.ok(drawn >= 0.75 * Math.min(received, turns), `${drawn} of ${received} frames were drawn in ${turns} turns`);
+    assert.equal(received + now.missed - before.missed, now.tick - before.tick, 'each tick is accounted for');
     await page.screenshot({ path: join(pictures, 'thousand.png') });
   }));
 
 test('pan, zoom, fit and pause do what they say', () =>
   withServer({ sandbox: 'sandbox' }, async (server) => {
     const page = await openPage(browser, server.url);
-    await until(page, 'h.drawn > 10');
+    await until(page, (h) => h.drawn > 10);
     const ruler = () => page.evaluate(() => document.getElementById('scale').textContent);
     await eventually('the scale', ruler);
     const fitted = await ruler();
@@ -133,13 +141,14 @@ test('pan, zoom, fit and pause do what they say', () =>
     await page.click('#fit');
     await eventually('the scene again', async () => (await pixels(page, ['static-fill']))['static-fill'] > 100);
 
+    await page.click('#canvas');
     await page.keyboard.press(' ');
     assert.equal(await page.textContent('#pause'), 'Resume');
     const stopped = await state(page);
-    await until(page, `h.tick >= ${stopped.tick + 30}`);
+    await until(page, (h) => h.tick >= stopped.tick + 30);
     assert.equal((await state(page)).drawn, stopped.drawn, 'nothing is drawn while paused');
     await page.click('#pause');
-    await until(page, `h.drawn > ${stopped.drawn + 10}`);
+    await until(page, (h) => h.drawn > stopped.drawn + 10);
     assert.deepEqual(page.problems, []);
   }));
 
@@ -148,15 +157,15 @@ test('the page comes back when its server does', async () => {
   let second;
   try {
     const page = await openPage(browser, first.url);
-    await until(page, 'h.tick > 30');
+    await until(page, (h) => h.tick > 30);
     assert.equal(await first.stop(), 0, first.log());
-    await until(page, "h.state === 'waiting'");
+    await until(page, (h) => h.state === 'waiting');
     assert.match(await page.textContent('#state'), /again in \d+ s/);
     await page.screenshot({ path: join(pictures, 'waiting.png') });
     const { tick } = await state(page);
     second = await startServer({ pile: 'pyramid:base=4' },
                                { data: first.data, web: new URL(first.url).host });
-    await until(page, `h.state === 'live' && h.tick > ${tick}`);
+    await until(page, (h) => h.state === 'live' && h.tick > tick);
     assert.ok((await state(page)).losses >= 1);
   } finally {
     await first.stop();
@@ -171,7 +180,7 @@ test('several sessions are listed, and unknown ones named as such', () =>
     assert.equal(await page.locator('nav a').count(), 2);
     await page.screenshot({ path: join(pictures, 'sessions.png') });
     await page.click('text=two');
-    await until(page, "h.session === 'two' && h.drawn > 0");
+    await until(page, (h) => h.session === 'two' && h.drawn > 0);
     assert.deepEqual(page.problems, []);
     const reply = await page.goto(`${server.url}?session=three`);
     assert.equal(reply.status(), 404);
