@@ -30,7 +30,7 @@ std::string_view nameOf(JsonValue::Kind kind);
 
 inline constexpr std::size_t maxJsonDepth = 16;
 inline constexpr std::size_t maxJsonFields = 64;        ///< of one object
-inline constexpr std::size_t maxJsonValues = 8u << 20;  ///< of a document
+inline constexpr std::size_t maxJsonValues = 4u << 20;  ///< of a document: 200,000 bodies or so
 
 /// Parses UTF-8 text. Refused with the path: a field that stands twice, a number beyond the range
 /// of doubles, nesting, fields and values beyond the caps; with line and column: what is not JSON.

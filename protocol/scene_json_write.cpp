@@ -11,7 +11,7 @@ namespace huestep::protocol {
 
 namespace {
 
-/// Small records of numbers stand on one line.
+/// Small records of numbers stand on one line, and so do lists of points.
 template <class T>
 inline constexpr bool onOneLine =
     std::is_same_v<T, Vec2> || std::is_same_v<T, Rotation> || std::is_same_v<T, Material> ||
@@ -56,12 +56,16 @@ class Writer {
 
     template <class T>
     void entries(const T* list, std::size_t size) {
+        constexpr std::size_t inlined = std::is_same_v<T, Vec2> ? 1 : 0;
         open('[');
+        m_inline += inlined;
         for (std::size_t i = 0; i < size; ++i) {
             next();
             value(list[i]);
         }
+        if (m_inline > 0) m_first = true;
         close(']');
+        m_inline -= inlined;
     }
 
     void open(char bracket) {
