@@ -19,7 +19,7 @@ struct Error {
 /// Holds a `T` or an `Error`. Thread rule: a plain value.
 template <class T>
 class [[nodiscard]] Result {
-   public:
+ public:
     Result(T value) : m_content(std::in_place_index<0>, std::move(value)) {}
     Result(Error error) : m_content(std::in_place_index<1>, std::move(error)) {}
 
@@ -50,7 +50,7 @@ class [[nodiscard]] Result {
         return *std::get_if<1>(&m_content);
     }
 
-   private:
+ private:
     std::variant<T, Error> m_content;
 };
 

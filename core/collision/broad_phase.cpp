@@ -8,7 +8,7 @@ namespace huestep {
 namespace {
 
 constexpr int lowestLevel = -7;   // cells of 1/128 m
-constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits
+constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits, as speeds have a cap
 constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
 constexpr std::uint32_t joinGrain = 256;
@@ -32,7 +32,10 @@ std::uint64_t keyOf(int level, std::int64_t row, std::int64_t column) {
 }
 
 int levelOf(const Bounds& box) {
-    const float extent = maxOf(box.high.x - box.low.x, box.high.y - box.low.y);
+    // A little more than the extent: centres and edges are rounded, the more the farther out.
+    const float farthest = maxOf(maxOf(-box.low.x, box.high.x), maxOf(-box.low.y, box.high.y));
+    const float extent = 1.01f * maxOf(box.high.x - box.low.x, box.high.y - box.low.y) +
+                         2e-6f * maxOf(farthest, 0.0f);
     int level = lowestLevel;
     while (level < highestLevel && cellSize(level) < extent) ++level;
     return level;

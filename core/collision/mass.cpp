@@ -54,7 +54,12 @@ void addSector(Moments& m, Point apex, Point bisector, double angle, double r) {
 
 }  // namespace
 
-MassProperties massOf(const HullT<double>& hull, double density) {
+MassProperties massOf(const HullT<double>& given, double density) {
+    // About a vertex, not about the frame's origin, which may be kilometres away: the second moment
+    // about the centre is a difference of two that grow with the square of that distance.
+    const Point origin = given.vertices[0];
+    HullT<double> hull = given;
+    for (int i = 0; i < hull.count; ++i) hull.vertices[static_cast<std::size_t>(i)] -= origin;
     Moments m;
     const double r = hull.radius;
     if (hull.count == 1) {
@@ -78,9 +83,10 @@ MassProperties massOf(const HullT<double>& hull, double density) {
             addSector(m, hull.vertices[next], rotate(half, hull.normals[here]), angle, r);
         }
     }
-    if (!(m.area > 0.0)) return {0.0, hull.vertices[0], 0.0};
+    if (!(m.area > 0.0)) return {0.0, origin, 0.0};
     const Point center = (1.0 / m.area) * m.first;
-    return {density * m.area, center, density * (m.second - m.area * lengthSquared(center))};
+    return {density * m.area, origin + center,
+            density * (m.second - m.area * lengthSquared(center))};
 }
 
 MassProperties combine(std::span<const MassProperties> parts) {

@@ -14,7 +14,7 @@ struct MassProperties {
 };
 
 /// Of one hull of uniform density (kg/m²). A segment (two vertices, radius 0) has none.
-MassProperties massOf(const HullT<double>& hull, double density);
+MassProperties massOf(const HullT<double>& given, double density);
 
 /// Of several rigidly joined parts (Steiner's theorem).
 MassProperties combine(std::span<const MassProperties> parts);

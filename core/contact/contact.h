@@ -25,6 +25,7 @@ struct Contact {
     float tangentSpeed = 0;
     float reach = 0;      ///< m: farthest point of either body that can turn, from its centre
     float roundness = 0;  ///< m: the larger radius
+    float slack = 0;      ///< m: how far the bodies may move while a manifold is kept
     std::uint8_t pointCount = 0;  ///< 0: not touching
     bool made = false;            ///< the manifold below is that of `state.relative`
 

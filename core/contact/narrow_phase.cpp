@@ -6,12 +6,12 @@ namespace huestep {
 
 namespace {
 
-// Recycling (physics page, 4): a manifold is kept while no point of its bodies has moved 5 cm
-// against the other body since it was made, and neither has turned by 11.5° in the world. Its
-// separations follow the bodies; its points, its normal and the arms of its rows stay. That is what
-// holds tall stacks up: rows whose arms follow the tilt of a box feed that tilt (measured here:
-// with rows that follow, 14 boxes stand and 15 fall; with rows that stay, 100 stand).
-constexpr float recycleDistance = 0.05f;
+// Recycling (physics page, 4): a manifold is kept while no point of its bodies has moved more
+// than the contact's slack (at most 5 cm) against the other body since it was made, and neither has
+// turned by 11.5° in the world. Its separations follow the bodies; its points, its normal and the
+// arms of its rows stay. That is what holds tall stacks up: rows whose arms follow the tilt of a
+// box feed that tilt (measured here: with rows that follow, 14 boxes stand and 15 fall; with rows
+// that stay, 100 stand).
 constexpr float recycleCosine = 0.98f;
 // A rounded surface that rolls by θ lifts a kept anchor by r(1 − cos θ): keep that below 0.5 mm.
 constexpr float recycleLift = 0.0005f;
@@ -31,7 +31,7 @@ bool mayRecycle(const Contact& contact, const Pose& now, const NarrowPhaseInput&
     const Rotation turned = relative(made.q, now.q);
     if (contact.roundness * (1.0f - turned.c) > recycleLift) return false;
     const float swing = contact.reach * (turned.s < 0.0f ? -turned.s : turned.s);
-    return length(now.p - made.p) + swing < recycleDistance;
+    return length(now.p - made.p) + swing < contact.slack;
 }
 
 /// Turns a manifold into the world by the rotation that the state keeps.

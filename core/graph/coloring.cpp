@@ -28,7 +28,7 @@ void color(std::span<const ConstraintBodies> constraints, std::uint32_t bodyCoun
             Used& body = used[static_cast<std::size_t>(c.a >= 0 ? c.a : c.b)];
             const int first = std::countr_one(body.fixed);
             if (first == 64) {
-                colours[i] = overflowColour;
+                colours[i] = fixedOverflowColour;
             } else {
                 colours[i] = static_cast<std::uint8_t>(firstFixedColour + first);
                 body.fixed |= std::uint64_t{1} << first;

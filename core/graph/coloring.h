@@ -14,9 +14,15 @@
 namespace huestep {
 
 /// Colours in the order in which they are solved.
-inline constexpr std::uint8_t overflowColour = 64;    ///< after 0 … 63; solved one by one
-inline constexpr std::uint8_t firstFixedColour = 65;  ///< against static or kinematic bodies
-inline constexpr int colourCount = 129;
+inline constexpr std::uint8_t overflowColour = 64;        ///< after 0 … 63; solved one by one
+inline constexpr std::uint8_t firstFixedColour = 65;      ///< against static or kinematic bodies
+inline constexpr std::uint8_t fixedOverflowColour = 129;  ///< after 65 … 128; solved one by one
+inline constexpr int colourCount = 130;
+
+/// Whether constraints of a colour may share bodies, so that one worker takes them in key order.
+constexpr bool isSerial(std::uint8_t colour) {
+    return colour == overflowColour || colour == fixedOverflowColour;
+}
 
 /// The bodies of a constraint; negative: one that is never written (see `BodyPlace`).
 struct ConstraintBodies {
@@ -26,7 +32,7 @@ struct ConstraintBodies {
 
 /// A colour for each constraint. Places are below `bodyCount`. Constraints between two moving
 /// bodies get the lowest colour below 64 that is free at both, those with one the lowest from 65;
-/// what finds none goes to the overflow.
+/// what finds none goes to the overflow of its kind.
 void color(std::span<const ConstraintBodies> constraints, std::uint32_t bodyCount,
            std::vector<std::uint8_t>& colours);
 

@@ -166,7 +166,9 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
     b.endBlock = blocksSoFar();
     b.endJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
-    plan.overflow += contacts[overflowColour] + joints[overflowColour];
+    for (const std::uint8_t c : {overflowColour, fixedOverflowColour}) {
+        plan.overflow += contacts[c] + joints[c];
+    }
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
         const std::uint32_t link = linkOrder[begin + i];
         if (link < plan.jointLinks) {

@@ -76,7 +76,8 @@ void solveRevolute(SolverBody* bodies, JointRow& row, const JointPass& pass) {
 
 LinePart lineOf(const Geometry& g, float& lengthNow) {
     lengthNow = length(g.between);
-    const Vec2 u = lengthNow > 1e-6f ? (1.0f / lengthNow) * g.between : Vec2{};
+    // Anchors that coincide have no direction: any will part them.
+    const Vec2 u = lengthNow > 1e-6f ? (1.0f / lengthNow) * g.between : Vec2{1.0f, 0.0f};
     return {g.rA, g.rB, u};
 }
 

@@ -206,5 +206,14 @@ using Bounds = BoundsT<float>;
 constexpr float canonicalZero(float v) {
     return v + 0.0f;
 }
+constexpr Vec2 canonicalZero(Vec2 v) {
+    return {v.x + 0.0f, v.y + 0.0f};
+}
+constexpr Rotation canonicalZero(Rotation q) {
+    return {q.c + 0.0f, q.s + 0.0f};
+}
+constexpr Pose canonicalZero(const Pose& pose) {
+    return {canonicalZero(pose.p), canonicalZero(pose.q)};
+}
 
 }  // namespace huestep

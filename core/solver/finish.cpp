@@ -18,8 +18,10 @@ bool settle(BodyMotion& motion, const BodyMotion& next) {
     const bool whole = isFinite(next.position) && isFinite(next.velocity) &&
                        isFinite(next.angularVelocity) && isFinite(next.rotation.c) &&
                        isFinite(next.rotation.s);
-    const auto outside = [](float x) { return x > maxCoordinate || x < -maxCoordinate; };
-    if (!whole || outside(next.position.x) || outside(next.position.y)) {
+    const auto beyond = [](float x, float most) { return x > most || x < -most; };
+    if (!whole || beyond(next.position.x, maxCoordinate) ||
+        beyond(next.position.y, maxCoordinate) || beyond(next.velocity.x, maxSpeed) ||
+        beyond(next.velocity.y, maxSpeed) || beyond(next.angularVelocity, maxSpeed)) {
         motion.velocity = {};
         motion.angularVelocity = 0.0f;
         return false;

@@ -90,7 +90,7 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
         for (std::uint32_t c = batch.firstColour; c < batch.endColour; ++c) {
             const ColourRun& run = plan.runs[c];
             // Constraints of the overflow share bodies: one worker, one by one, in key order.
-            const bool serial = run.colour == overflowColour;
+            const bool serial = isSerial(run.colour);
             const ContactKernels& kernels = serial ? contactKernels(Simd::Scalar) : *pass.kernels;
             if (!serial || worker == 0) {
                 const Share joints(run.jointCount, serial ? 0 : worker, serial ? 1 : workers);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/state/hash.h"
+#include "core/state/validate.h"
 
 namespace huestep {
 

@@ -27,8 +27,4 @@ std::vector<std::byte> writeSnapshot(const WorldState& state);
 /// Reads and checks everything: checksums, counts, and every record by `validate`.
 Result<WorldState> readSnapshot(std::span<const std::byte> bytes);
 
-/// Whether a world could be in this state: ids rise and are below their counters, references hold,
-/// numbers are finite and in range, shapes convex. The sentence names record and field.
-Status validate(const WorldState& state);
-
 }  // namespace huestep

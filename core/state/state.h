@@ -1,6 +1,8 @@
 /// The state of a world between two steps: everything its future depends on, and nothing else.
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +29,15 @@ struct WorldState {
     [[nodiscard]] WorldInfo& info() { return world.front(); }
     [[nodiscard]] const WorldInfo& info() const { return world.front(); }
 };
+
+/// Place of the record with this id in an array sorted by id, if it is there.
+template <class Record>
+std::optional<std::uint32_t> placeById(const std::vector<Record>& array, std::uint32_t id) {
+    const auto at = std::lower_bound(array.begin(), array.end(), id,
+                                     [](const Record& r, std::uint32_t k) { return r.id < k; });
+    if (at == array.end() || at->id != id) return std::nullopt;
+    return static_cast<std::uint32_t>(at - array.begin());
+}
 
 /// Calls `visit(name, array)` for every array, in the order of snapshots and of differences.
 /// The one list: whoever hashes, saves, loads or compares goes through here.

@@ -1,12 +1,12 @@
-// What a state must satisfy to be stepped. A snapshot comes from outside: its checksums say that
-// it arrived whole, not that it makes sense.
+// A snapshot comes from outside: its checksums say that it arrived whole, not that it makes sense.
+
+#include "core/state/validate.h"
 
 #include <bit>
 #include <cstring>
 
 #include "core/collision/hull.h"
 #include "core/math/finite.h"
-#include "core/state/snapshot.h"
 
 namespace huestep {
 
@@ -71,23 +71,26 @@ bool within(float v, float low, float high) {
     return v >= low && v <= high;
 }
 
-std::string badInfo(const WorldInfo& w) {
-    if (!(w.stepSeconds > 0.0f) || !(w.stepSeconds <= 0.1f))
-        return "world stepSeconds: out of range";
-    if (w.substeps < 1 || w.substeps > 64) return "world substeps: out of range";
-    if (w.nextBody == 0 || w.nextShape == 0 || w.nextJoint == 0) return "world counters: zero";
-    if (w.reserved != 0) return "world reserved: not zero";
-    return {};
-}
-
 // A centre of mass may be farther out than its body's origin, by the extent of the shapes.
 constexpr float farthestCenter = maxCoordinate + 2.0f * caps::maxExtent;
 constexpr float maxMass = 1.0e20f;  // kg; far above that of any definition
 
-std::string badMotion(const BodyMotion& m) {
-    if (!unit(m.rotation)) return "rotation: not a unit vector";
-    if (!within(m.position.x, -farthestCenter, farthestCenter)) return "position.x: out of range";
-    if (!within(m.position.y, -farthestCenter, farthestCenter)) return "position.y: out of range";
+std::string badInfo(const WorldInfo& w) {
+    if (!within(w.stepSeconds, caps::minStepSeconds, 0.1f)) {
+        return "world stepSeconds: out of range";
+    }
+    if (w.substeps < 1 || w.substeps > 64) return "world substeps: out of range";
+    if (w.nextBody == 0 || w.nextShape == 0 || w.nextJoint == 0) return "world counters: zero";
+    if (w.flags > (WorldInfo::sleep | WorldInfo::players)) return "world flags: unknown bits";
+    if (!within(w.gravity.x, -caps::maxGravity, caps::maxGravity) ||
+        !within(w.gravity.y, -caps::maxGravity, caps::maxGravity)) {
+        return "world gravity: out of range";
+    }
+    if (w.maxBodies > caps::maxBodies || w.maxShapes > caps::maxShapes ||
+        w.maxJoints > caps::maxJoints) {
+        return "world limits: out of range";
+    }
+    if (w.reserved != 0) return "world reserved: not zero";
     return {};
 }
 
@@ -97,7 +100,116 @@ std::string badSpawnPoint(const SpawnPoint& p) {
     return {};
 }
 
-std::string badBody(const BodyInfo& b) {
+/// Impulses are bounded by their being finite; a push is never negative.
+std::string badContact(const ContactState& c) {
+    if (!unit(c.relative.q)) return "relative: not a unit vector";
+    if (!within(c.turn, -3.0f, 3.0f)) return "turn: out of range";
+    if (c.normalImpulse[0] < 0 || c.normalImpulse[1] < 0) return "normalImpulse: negative";
+    return {};
+}
+
+std::string badReferences(const WorldState& s) {
+    BodyId last = 0;
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+        if (s.shapes[i].body < last) return nth("shape", i) + " body: shapes follow their bodies";
+        last = s.shapes[i].body;
+        if (!placeById(s.bodies, last)) return nth("shape", i) + " body: no such body";
+    }
+    for (std::size_t i = 0; i < s.joints.size(); ++i) {
+        const JointInfo& j = s.joints[i];
+        if (j.bodyA == j.bodyB) return nth("joint", i) + " bodyB: the same as bodyA";
+        // A grab draws its body to a point of the world: it has no body A.
+        const bool mouse = j.kind() == JointKind::Mouse;
+        if (mouse ? j.bodyA != 0 : !placeById(s.bodies, j.bodyA)) {
+            return nth("joint", i) + " bodyA: no such body";
+        }
+        if (!placeById(s.bodies, j.bodyB)) return nth("joint", i) + " bodyB: no such body";
+    }
+    ShapeId lastA = 0, lastB = 0;
+    for (std::size_t i = 0; i < s.contacts.size(); ++i) {
+        const ContactState& c = s.contacts[i];
+        if (c.shapeA < lastA || (c.shapeA == lastA && c.shapeB <= lastB)) {
+            return nth("contact", i) + " shapeA: contacts must be in key order";
+        }
+        lastA = c.shapeA;
+        lastB = c.shapeB;
+        const auto a = placeById(s.shapes, c.shapeA);
+        const auto b = placeById(s.shapes, c.shapeB);
+        if (c.shapeA >= c.shapeB || !a || !b) return nth("contact", i) + " shapeB: no such pair";
+        if (s.shapes[*a].body == s.shapes[*b].body) {
+            return nth("contact", i) + " shapeB: of the same body";
+        }
+        if (std::string bad = badContact(c); !bad.empty()) return nth("contact", i) + " " + bad;
+    }
+    return {};
+}
+
+std::string badPlayers(const WorldState& s) {
+    if (s.players.empty() || s.players.front().id != 0) return "player 0: the host is missing";
+    for (std::size_t i = 0; i < s.players.size(); ++i) {
+        const PlayerRecord& p = s.players[i];
+        if (i > 0 && p.id <= s.players[i - 1].id) return nth("player", i) + " id: ids must rise";
+        if (p.body != 0 && !placeById(s.bodies, p.body)) return nth("player", i) + " body: none";
+        if (p.grab == 0) continue;
+        const auto held = placeById(s.joints, p.grab);
+        if (!held) return nth("player", i) + " grab: none";
+        const JointInfo& joint = s.joints[*held];
+        if (joint.owner != p.id) return nth("player", i) + " grab: another's";
+        if (joint.kind() != JointKind::Mouse) return nth("player", i) + " grab: no grab";
+    }
+    return {};
+}
+
+template <class Record, class Check>
+std::string firstBad(std::string_view name, const std::vector<Record>& array, Check check) {
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        if (std::string bad = check(array[i]); !bad.empty()) return nth(name, i) + " " + bad;
+    }
+    return {};
+}
+
+std::string badState(const WorldState& s) {
+    if (s.world.size() != 1) return "world: not exactly one record";
+    if (s.motions.size() != s.bodies.size()) return "motion: not one a body";
+    if (s.jointImpulses.size() != s.joints.size()) return "jointImpulse: not one a joint";
+    if (s.playerBody.size() > 1) return "playerBody: more than one";
+    if (s.playerMotion.size() != s.playerBody.size()) return "playerMotion: not one a playerBody";
+    const auto fault = [](const auto& record) { return faultOf(record); };
+    std::string bad;
+    forEachArray(s, [&](std::string_view name, const auto& array) {
+        if (bad.empty()) bad = badNumber(name, array);
+    });
+    const WorldInfo& info = s.info();
+    if (bad.empty()) bad = badInfo(info);
+    if (bad.empty()) bad = badOrder("body", s.bodies, info.nextBody);
+    if (bad.empty()) bad = badOrder("shape", s.shapes, info.nextShape);
+    if (bad.empty()) bad = badOrder("joint", s.joints, info.nextJoint);
+    if (bad.empty()) bad = firstBad("motion", s.motions, fault);
+    if (bad.empty()) bad = firstBad("body", s.bodies, fault);
+    if (bad.empty()) bad = firstBad("shape", s.shapes, fault);
+    if (bad.empty()) bad = firstBad("playerBody", s.playerBody, fault);
+    if (bad.empty()) bad = firstBad("playerMotion", s.playerMotion, fault);
+    if (bad.empty()) bad = firstBad("playerShape", s.playerShapes, fault);
+    if (bad.empty()) bad = firstBad("spawnPoint", s.spawnPoints, badSpawnPoint);
+    if (bad.empty()) bad = firstBad("joint", s.joints, fault);
+    if (bad.empty()) bad = badReferences(s);
+    if (bad.empty()) bad = badPlayers(s);
+    return bad;
+}
+
+}  // namespace
+
+std::string faultOf(const BodyMotion& m) {
+    if (!unit(m.rotation)) return "rotation: not a unit vector";
+    if (!within(m.position.x, -farthestCenter, farthestCenter)) return "position.x: out of range";
+    if (!within(m.position.y, -farthestCenter, farthestCenter)) return "position.y: out of range";
+    if (!within(m.velocity.x, -maxSpeed, maxSpeed)) return "velocity.x: out of range";
+    if (!within(m.velocity.y, -maxSpeed, maxSpeed)) return "velocity.y: out of range";
+    if (!within(m.angularVelocity, -maxSpeed, maxSpeed)) return "angularVelocity: out of range";
+    return {};
+}
+
+std::string faultOf(const BodyInfo& b) {
     if ((b.flags & BodyInfo::typeMask) > 2) return "flags: no such body type";
     if (b.flags > 15) return "flags: unknown bits";
     if (b.dynamic() != (b.inverseMass > 0.0f)) return "inverseMass: does not fit the type";
@@ -114,7 +226,7 @@ std::string badBody(const BodyInfo& b) {
     return {};
 }
 
-std::string badShape(const ShapeInfo& s) {
+std::string faultOf(const ShapeInfo& s) {
     const int n = s.vertexCount();
     bool countFits = false;
     switch (s.kind & 0xffu) {
@@ -136,8 +248,10 @@ std::string badShape(const ShapeInfo& s) {
     if (!within(s.friction, 0, 100)) return "friction: out of range";
     if (!within(s.restitution, 0, 1)) return "restitution: out of range";
     if (!within(s.rollingResistance, 0, 100)) return "rollingResistance: out of range";
-    for (const Vec2 v :
-         s.vertices) {  // from the centre of mass: twice what is allowed from the origin
+    if (!within(s.tangentSpeed, -maxSpeed, maxSpeed)) return "tangentSpeed: out of range";
+    if (!within(s.density, 0, caps::maxDensity)) return "density: out of range";
+    // From the centre of mass: twice what is allowed from the origin.
+    for (const Vec2 v : s.vertices) {
         const float most = 2.0f * caps::maxExtent;
         if (!within(v.x, -most, most) || !within(v.y, -most, most)) return "vertices: out of range";
     }
@@ -153,92 +267,18 @@ std::string badShape(const ShapeInfo& s) {
     return {};
 }
 
-std::string badReferences(const WorldState& s) {
-    BodyId last = 0;
-    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
-        if (s.shapes[i].body < last) return nth("shape", i) + " body: shapes follow their bodies";
-        last = s.shapes[i].body;
-        if (!findById(s.bodies, last)) return nth("shape", i) + " body: no such body";
-    }
-    for (std::size_t i = 0; i < s.joints.size(); ++i) {
-        const JointInfo& j = s.joints[i];
-        if ((j.flags & 0xffu) > 2 || j.flags > 0x1fff) return nth("joint", i) + " flags: unknown";
-        if (j.bodyA == j.bodyB) return nth("joint", i) + " bodyB: the same as bodyA";
-        // A grab draws its body to a point of the world: it has no body A.
-        const bool mouse = j.kind() == JointKind::Mouse;
-        if (mouse ? j.bodyA != 0 : !findById(s.bodies, j.bodyA)) {
-            return nth("joint", i) + " bodyA: no such body";
-        }
-        if (!findById(s.bodies, j.bodyB)) return nth("joint", i) + " bodyB: no such body";
-        if (!unit(j.reference)) return nth("joint", i) + " reference: not a unit vector";
-    }
-    ShapeId lastA = 0, lastB = 0;
-    for (std::size_t i = 0; i < s.contacts.size(); ++i) {
-        const ContactState& c = s.contacts[i];
-        if (c.shapeA < lastA || (c.shapeA == lastA && c.shapeB <= lastB)) {
-            return nth("contact", i) + " shapeA: contacts must be in key order";
-        }
-        lastA = c.shapeA;
-        lastB = c.shapeB;
-        const ShapeInfo* a = findById(s.shapes, c.shapeA);
-        const ShapeInfo* b = findById(s.shapes, c.shapeB);
-        if (c.shapeA >= c.shapeB || !a || !b) return nth("contact", i) + " shapeB: no such pair";
-        if (a->body == b->body) return nth("contact", i) + " shapeB: of the same body";
-        if (!unit(c.relative.q)) return nth("contact", i) + " relative: not a unit vector";
-    }
+std::string faultOf(const JointInfo& j) {
+    if ((j.flags & 0xffu) > 2 || j.flags > 0x1fff) return "flags: unknown";
+    if (!unit(j.reference)) return "reference: not a unit vector";
+    if (!within(j.length, 0, caps::maxJointLength)) return "length: out of range";
+    if (!within(j.maxForce, 0, caps::maxEffort)) return "maxForce: out of range";
+    if (!within(j.motorMaxEffort, 0, caps::maxEffort)) return "motorMaxEffort: out of range";
+    if (!within(j.motorSpeed, -maxSpeed, maxSpeed)) return "motorSpeed: out of range";
+    if (!within(j.springHertz, 0, 1000)) return "springHertz: out of range";
+    if (!within(j.springDamping, 0, 1000)) return "springDamping: out of range";
+    if (j.lower > j.upper) return "lower: above upper";
     return {};
 }
-
-std::string badPlayers(const WorldState& s) {
-    if (s.players.empty() || s.players.front().id != 0) return "player 0: the host is missing";
-    for (std::size_t i = 0; i < s.players.size(); ++i) {
-        const PlayerRecord& p = s.players[i];
-        if (i > 0 && p.id <= s.players[i - 1].id) return nth("player", i) + " id: ids must rise";
-        if (p.body != 0 && !findById(s.bodies, p.body)) return nth("player", i) + " body: none";
-        if (p.grab == 0) continue;
-        const JointInfo* held = findById(s.joints, p.grab);
-        if (!held) return nth("player", i) + " grab: none";
-        if (held->owner != p.id) return nth("player", i) + " grab: another's";
-    }
-    return {};
-}
-
-template <class Record, class Check>
-std::string firstBad(std::string_view name, const std::vector<Record>& array, Check check) {
-    for (std::size_t i = 0; i < array.size(); ++i) {
-        if (std::string bad = check(array[i]); !bad.empty()) return nth(name, i) + " " + bad;
-    }
-    return {};
-}
-
-std::string badState(const WorldState& s) {
-    if (s.world.size() != 1) return "world: not exactly one record";
-    if (s.motions.size() != s.bodies.size()) return "motion: not one a body";
-    if (s.jointImpulses.size() != s.joints.size()) return "jointImpulse: not one a joint";
-    if (s.playerBody.size() > 1) return "playerBody: more than one";
-    if (s.playerMotion.size() != s.playerBody.size()) return "playerMotion: not one a playerBody";
-    std::string bad;
-    forEachArray(s, [&](std::string_view name, const auto& array) {
-        if (bad.empty()) bad = badNumber(name, array);
-    });
-    const WorldInfo& info = s.info();
-    if (bad.empty()) bad = badInfo(info);
-    if (bad.empty()) bad = badOrder("body", s.bodies, info.nextBody);
-    if (bad.empty()) bad = badOrder("shape", s.shapes, info.nextShape);
-    if (bad.empty()) bad = badOrder("joint", s.joints, info.nextJoint);
-    if (bad.empty()) bad = firstBad("motion", s.motions, badMotion);
-    if (bad.empty()) bad = firstBad("body", s.bodies, badBody);
-    if (bad.empty()) bad = firstBad("shape", s.shapes, badShape);
-    if (bad.empty()) bad = firstBad("playerBody", s.playerBody, badBody);
-    if (bad.empty()) bad = firstBad("playerMotion", s.playerMotion, badMotion);
-    if (bad.empty()) bad = firstBad("playerShape", s.playerShapes, badShape);
-    if (bad.empty()) bad = firstBad("spawnPoint", s.spawnPoints, badSpawnPoint);
-    if (bad.empty()) bad = badReferences(s);
-    if (bad.empty()) bad = badPlayers(s);
-    return bad;
-}
-
-}  // namespace
 
 Status validate(const WorldState& state) {
     std::string bad = badState(state);

@@ -3,36 +3,25 @@
 #include <algorithm>
 
 #include "core/state/snapshot.h"
+#include "core/state/validate.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
 
-namespace {
-
-template <class Record>
-std::optional<std::uint32_t> findById(const std::vector<Record>& array, std::uint32_t id) {
-    const auto at = std::lower_bound(array.begin(), array.end(), id,
-                                     [](const Record& r, std::uint32_t k) { return r.id < k; });
-    if (at == array.end() || at->id != id) return std::nullopt;
-    return static_cast<std::uint32_t>(at - array.begin());
-}
-
-}  // namespace
-
 std::optional<std::uint32_t> World::Data::findBody(BodyId id) const {
-    const auto at = findById(state.bodies, id);
+    const auto at = placeById(state.bodies, id);
     if (at && !removed.empty() && *at < removed.size() && removed[*at]) return std::nullopt;
     return at;
 }
 
 std::optional<std::uint32_t> World::Data::findJoint(JointId id) const {
-    const auto at = findById(state.joints, id);
+    const auto at = placeById(state.joints, id);
     if (at && *at < removedJoints.size() && removedJoints[*at]) return std::nullopt;
     return at;
 }
 
 PlayerRecord* World::Data::findPlayer(PlayerId id) {
-    const auto at = findById(state.players, id);
+    const auto at = placeById(state.players, id);
     return at ? &state.players[*at] : nullptr;
 }
 
@@ -48,6 +37,12 @@ void World::Data::contactsToState() const {
         if (contact.pointCount > 0) state.contacts.push_back(contact.state);
     }
     contactsInState = true;
+}
+
+void World::Data::changeDefinitions() {
+    contactsToState();  // the places that contacts refer to are about to change
+    accelerators.definitionsStale = true;
+    roots.definitionsKnown = false;
 }
 
 World::World(std::unique_ptr<Data> data) : m_data(std::move(data)) {}
@@ -72,6 +67,8 @@ Result<World> World::create(const Scene& scene) {
     if (const Status fine = check(scene); !fine) return fine.error();
     auto data = std::make_unique<Data>();
     data->build(scene);
+    // What a scene may say and what a state may hold differ by rounding at the rims.
+    if (const Status sound = validate(data->state); !sound) return sound.error();
     return World(std::move(data));
 }
 

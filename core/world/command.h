@@ -27,7 +27,7 @@ struct RemovePlayer {
     friend bool operator==(const RemovePlayer&, const RemovePlayer&) = default;
 };
 
-/// An impulse at a point of the world. Wakes the body.
+/// An impulse at a point of the world; a player's must be within 1 m of the body's reach. Wakes it.
 struct ApplyImpulse {
     BodyId body = 0;
     Vec2 impulse;  ///< N·s
@@ -35,7 +35,7 @@ struct ApplyImpulse {
     friend bool operator==(const ApplyImpulse&, const ApplyImpulse&) = default;
 };
 
-/// A force at a point of the world, for this tick. Wakes the body.
+/// A force at a point of the world, for this tick; as with an impulse. Wakes the body.
 struct ApplyForce {
     BodyId body = 0;
     Vec2 force;  ///< N
@@ -64,7 +64,8 @@ struct Release {
 };
 
 /// Adds bodies and joints between them; they get the next ids in order. A player's bodies count
-/// against its budget and belong to it; players spawn at most 8 bodies a command, and no joint.
+/// against its budget and belong to it. Players spawn at most 8 dynamic bodies a command, of at
+/// most 8 shapes and 10 m of reach, overlapping the bounds of at most 64 shapes, and no joint.
 struct Spawn {
     std::vector<BodyDef> bodies;
     std::vector<JointDef> joints;
@@ -128,12 +129,15 @@ enum class Rejection : std::uint16_t {
     NothingGrabbed,
     NoMotor,  ///< the joint has no motor that the scene enabled
     PlayerExists,
+    TooFar,      ///< a point that is not on or near the body
+    TooCrowded,  ///< a spawned shape would overlap too many others
 };
 
 /// The reason in words, for a person.
 std::string_view describe(Rejection reason);
 
-/// Orders commands by (author, sequence), the key order in which a step applies them.
+/// Orders commands by (author, sequence), the key order in which a step applies them. Of two with
+/// the same key the first in the list counts and the second is rejected as old.
 void sortByKey(std::vector<Command>& commands);
 
 }  // namespace huestep

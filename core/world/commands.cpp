@@ -10,18 +10,19 @@ namespace huestep {
 
 namespace {
 
-constexpr std::size_t maxPlayerSpawn = 8;  // bodies a command
-constexpr float grabHertz = 5.0f;          // soft enough not to shake what is held
+constexpr float pushSlack = 1.0f;  // m, how far beside a body a player may push it
+constexpr float grabHertz = 5.0f;  // soft enough not to shake what is held
 constexpr float grabDamping = 0.7f;
+
+/// A speed that a body may have; not so for NaN.
+bool slow(float v) {
+    return v >= -maxSpeed && v <= maxSpeed;
+}
 
 bool inWorld(Vec2 p) {
     const auto in = [](float v) { return v >= -maxCoordinate && v <= maxCoordinate; };
     return isFinite(p) && in(p.x) && in(p.y);
 }
-
-}  // namespace
-
-namespace {
 
 /// One tick's commands against one world. Each `apply` either does all of its command or nothing.
 class Applier {
@@ -40,6 +41,10 @@ class Applier {
             return outcome;
         }
         author->lastSequence = command.sequence;
+        if (command.author != 0 && ++m_fromPlayers > m_state.info().maxCommandsPerTick) {
+            outcome.reason = Rejection::OverLimit;
+            return outcome;
+        }
         m_author = command.author;
         m_firstBody = 0;
         outcome.reason =
@@ -58,6 +63,13 @@ class Applier {
         if (!found) return Rejection::UnknownBody;
         place = *found;
         return m_state.bodies[place].dynamic() ? Rejection::None : Rejection::WrongBodyType;
+    }
+
+    /// Whether a player pushes at a point where the body is not: a long arm would make a weak push
+    /// a strong one.
+    [[nodiscard]] bool tooFar(std::uint32_t place, Vec2 point) const {
+        const float arm = length(point - m_state.motions[place].position);
+        return !host() && !(arm <= m_world.reachOf(place) + pushSlack);
     }
 
     [[nodiscard]] bool tooStrong(Vec2 v, float most) const {
@@ -84,7 +96,7 @@ class Applier {
     }
 
     BodyId spawnPlayerBody(const PlayerRecord& player) {
-        m_world.contactsToState();
+        m_world.changeDefinitions();
         WorldInfo& info = m_state.info();
         BodyInfo body = m_state.playerBody.front();
         BodyMotion motion = m_state.playerMotion.front();
@@ -94,7 +106,7 @@ class Applier {
             const Vec2 point =
                 m_state.spawnPoints[player.joined % m_state.spawnPoints.size()].position;
             motion.position = point + rotate(motion.rotation, body.localCenter);
-            motion.position = {canonicalZero(motion.position.x), canonicalZero(motion.position.y)};
+            motion.position = canonicalZero(motion.position);
         }
         m_state.bodies.push_back(body);
         m_state.motions.push_back(motion);
@@ -103,8 +115,6 @@ class Applier {
             shape.body = body.id;
             m_state.shapes.push_back(shape);
         }
-        m_world.accelerators.definitionsStale = true;
-        m_world.roots.definitionsKnown = false;
         return body.id;
     }
 
@@ -126,14 +136,15 @@ class Applier {
         if (!isFinite(action.impulse) || !inWorld(action.point)) return Rejection::NotFinite;
         if (const Rejection r = findPushed(action.body, place); r != Rejection::None) return r;
         if (tooStrong(action.impulse, m_state.info().maxImpulse)) return Rejection::TooStrong;
+        if (tooFar(place, action.point)) return Rejection::TooFar;
         const BodyInfo& info = m_state.bodies[place];
         BodyMotion& motion = m_state.motions[place];
         const Vec2 velocity = motion.velocity + info.inverseMass * action.impulse;
         const float spin =
             motion.angularVelocity +
             info.inverseInertia * cross(action.point - motion.position, action.impulse);
-        if (!isFinite(velocity) || !isFinite(spin)) return Rejection::TooStrong;
-        motion.velocity = {canonicalZero(velocity.x), canonicalZero(velocity.y)};
+        if (!slow(velocity.x) || !slow(velocity.y) || !slow(spin)) return Rejection::TooStrong;
+        motion.velocity = canonicalZero(velocity);
         motion.angularVelocity = canonicalZero(spin);
         m_world.wake(place);
         return Rejection::None;
@@ -144,10 +155,18 @@ class Applier {
         if (!isFinite(action.force) || !inWorld(action.point)) return Rejection::NotFinite;
         if (const Rejection r = findPushed(action.body, place); r != Rejection::None) return r;
         if (tooStrong(action.force, m_state.info().maxForce)) return Rejection::TooStrong;
+        if (tooFar(place, action.point)) return Rejection::TooFar;
+        const float torque = cross(action.point - m_state.motions[place].position, action.force);
+        const float dt = m_state.info().stepSeconds;
+        const BodyInfo& info = m_state.bodies[place];
+        if (!slow(dt * info.inverseMass * length(action.force)) ||
+            !slow(dt * info.inverseInertia * torque)) {
+            return Rejection::TooStrong;
+        }
         m_world.forces.resize(m_state.bodies.size());
         BodyForce& sum = m_world.forces[place];
         sum.force += action.force;
-        sum.torque += cross(action.point - m_state.motions[place].position, action.force);
+        sum.torque += torque;
         m_world.wake(place);
         return Rejection::None;
     }
@@ -172,18 +191,17 @@ class Applier {
         j.flags = static_cast<std::uint32_t>(JointKind::Mouse) | JointInfo::spring;
         j.bodyB = action.body;
         j.owner = m_author;
-        j.anchorB = {canonicalZero(anchor.x), canonicalZero(anchor.y)};
-        j.target = {canonicalZero(action.target.x), canonicalZero(action.target.y)};
+        j.anchorB = canonicalZero(anchor);
+        j.reference = {1.0f, 0.0f};
+        j.target = canonicalZero(action.target);
         // What lifts the body and as much again, within the scene's cap.
-        const float most = m_state.bodies[place].mass * 1000.0f;
+        const float most = minOf(m_state.bodies[place].mass * 1000.0f, caps::maxEffort);
         j.maxForce = host() ? most : minOf(most, m_state.info().maxForce);
         j.springHertz = grabHertz;
         j.springDamping = grabDamping;
         m_state.joints.push_back(j);
         m_state.jointImpulses.push_back({});
         author().grab = j.id;
-        m_world.accelerators.definitionsStale = true;
-        m_world.roots.definitionsKnown = false;
         m_world.wake(place);
         return Rejection::None;
     }
@@ -193,7 +211,7 @@ class Applier {
         const auto held = m_world.findJoint(author().grab);
         if (author().grab == 0 || !held) return Rejection::NothingGrabbed;
         JointInfo& joint = m_state.joints[*held];
-        joint.target = {canonicalZero(action.target.x), canonicalZero(action.target.y)};
+        joint.target = canonicalZero(action.target);
         m_world.roots.definitionsKnown = false;
         if (const auto body = m_world.findBody(joint.bodyB)) m_world.wake(*body);
         return Rejection::None;
@@ -217,43 +235,14 @@ class Applier {
     }
 
     Rejection apply(const Spawn& action) {
-        if (action.bodies.empty()) return Rejection::BadDefinition;
+        if (const Rejection r = m_world.judge(action, m_author); r != Rejection::None) return r;
         std::size_t shapes = 0;
-        for (const BodyDef& body : action.bodies) {
-            if (body.id != 0 || body.firstShape != 0) return Rejection::BadDefinition;
-            if (!check(body, "body")) return Rejection::BadDefinition;
-            if (!host() && body.type != BodyType::Dynamic) return Rejection::NotAllowed;
-            shapes += body.shapes.size();
-        }
-        for (const JointDef& joint : action.joints) {
-            if (joint.id != 0 || !check(joint, action.bodies.size(), "joint")) {
-                return Rejection::BadDefinition;
-            }
-        }
-        if (!host()) {
-            if (action.bodies.size() > maxPlayerSpawn || !action.joints.empty()) {
-                return Rejection::NotAllowed;
-            }
-            if (spawnedBy(m_author) + action.bodies.size() > m_state.info().maxSpawned) {
-                return Rejection::OverBudget;
-            }
-        }
+        for (const BodyDef& body : action.bodies) shapes += body.shapes.size();
         if (!roomFor(action.bodies.size(), shapes, action.joints.size())) {
             return Rejection::OverLimit;
         }
         m_firstBody = m_world.add(action.bodies, action.joints, m_author);
         return Rejection::None;
-    }
-
-    /// Bodies the player spawned and that are still there; the one the scene gave it apart.
-    [[nodiscard]] std::size_t spawnedBy(PlayerId player) {
-        const BodyId own = m_world.findPlayer(player)->body;
-        std::size_t count = 0;
-        for (std::uint32_t i = 0; i < m_state.bodies.size(); ++i) {
-            const BodyInfo& body = m_state.bodies[i];
-            if (body.owner == player && body.id != own && !marked(i)) ++count;
-        }
-        return count;
     }
 
     Rejection apply(const RemoveBody& action) {
@@ -303,14 +292,11 @@ class Applier {
         if (!place) return Rejection::UnknownBody;
         if (m_state.bodies[*place].type() != BodyType::Kinematic) return Rejection::WrongBodyType;
         BodyMotion& motion = m_state.motions[*place];
-        motion.velocity = {canonicalZero(action.velocity.x), canonicalZero(action.velocity.y)};
+        motion.velocity = canonicalZero(action.velocity);
         motion.angularVelocity = canonicalZero(action.angularVelocity);
         return Rejection::None;
     }
 
-    [[nodiscard]] bool marked(std::uint32_t body) const {
-        return body < m_world.removed.size() && m_world.removed[body];
-    }
     void markBody(std::uint32_t place) {
         m_world.removed.resize(m_state.bodies.size(), 0);
         m_world.removed[place] = 1;
@@ -326,6 +312,7 @@ class Applier {
     WorldState& m_state;
     PlayerId m_author = 0;
     BodyId m_firstBody = 0;
+    std::uint32_t m_fromPlayers = 0;
 };
 
 }  // namespace
@@ -335,59 +322,10 @@ void World::Data::applyCommands(std::span<const Command> commands) {
     std::vector<Command> sorted(commands.begin(), commands.end());
     sortByKey(sorted);
     Applier applier(*this);
-    std::uint32_t fromPlayers = 0;
-    for (const Command& command : sorted) {
-        if (command.author != 0 && ++fromPlayers > state.info().maxCommandsPerTick) {
-            events.commands.push_back({command.author, command.sequence, Rejection::OverLimit, 0});
-            continue;
-        }
-        events.commands.push_back(applier.apply(command));
-    }
+    for (const Command& command : sorted) events.commands.push_back(applier.apply(command));
     // A body that came after a force of the same tick has none.
     if (!forces.empty()) forces.resize(state.bodies.size());
     removeMarked();
-}
-
-void sortByKey(std::vector<Command>& commands) {
-    std::stable_sort(commands.begin(), commands.end(), [](const Command& a, const Command& b) {
-        return a.author != b.author ? a.author < b.author : a.sequence < b.sequence;
-    });
-}
-
-std::string_view describe(Rejection reason) {
-    switch (reason) {
-        case Rejection::None:
-            return "applied";
-        case Rejection::UnknownAuthor:
-            return "the author is no player of this world";
-        case Rejection::NotAllowed:
-            return "the author may not do this";
-        case Rejection::OldSequence:
-            return "the sequence is not above the author's last";
-        case Rejection::UnknownBody:
-            return "there is no such body";
-        case Rejection::UnknownJoint:
-            return "there is no such joint";
-        case Rejection::WrongBodyType:
-            return "the body is of the wrong type for this";
-        case Rejection::NotFinite:
-            return "a number is not finite or out of range";
-        case Rejection::TooStrong:
-            return "the impulse or force is above the scene's cap";
-        case Rejection::BadDefinition:
-            return "the definition is not valid";
-        case Rejection::OverBudget:
-            return "the author's spawn budget is used up";
-        case Rejection::OverLimit:
-            return "a limit of the world is reached";
-        case Rejection::NothingGrabbed:
-            return "the author holds nothing";
-        case Rejection::NoMotor:
-            return "the joint has no motor";
-        case Rejection::PlayerExists:
-            return "the player is already there";
-    }
-    return "unknown reason";
 }
 
 }  // namespace huestep

@@ -1,116 +1,27 @@
-// From definitions to records, and what is derived from them.
+// Bodies and joints come into a world; what is derived from them is made again.
 
 #include <algorithm>
 #include <cassert>
 #include <numeric>
 
-#include "core/collision/mass.h"
+#include "core/world/from_definition.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
 
 namespace {
 
-float zeroed(float v) {
-    return canonicalZero(v);
-}
-Vec2 zeroed(Vec2 v) {
-    return {canonicalZero(v.x), canonicalZero(v.y)};
-}
-Rotation zeroed(Rotation q) {
-    return {canonicalZero(q.c), canonicalZero(q.s)};
-}
-
-ShapeInfo shapeInfo(const ShapeDef& def, Vec2 localCenter) {
-    ShapeInfo s{};
-    s.kind =
-        static_cast<std::uint32_t>(def.kind) | (static_cast<std::uint32_t>(def.vertexCount) << 8);
-    s.radius = zeroed(def.radius);
-    for (std::size_t i = 0; i < def.vertexCount; ++i) {
-        s.vertices[i] = zeroed(def.vertices[i] - localCenter);
+/// From the mean of the vertices to the farthest point.
+float sizeOf(const Hull& hull) {
+    Vec2 middle;
+    const auto count = static_cast<std::size_t>(hull.count);
+    for (std::size_t v = 0; v < count; ++v) middle += hull.vertices[v];
+    middle = (1.0f / static_cast<float>(count)) * middle;
+    float size = 0.0f;
+    for (std::size_t v = 0; v < count; ++v) {
+        size = maxOf(size, length(hull.vertices[v] - middle));
     }
-    s.density = zeroed(def.density);
-    s.friction = zeroed(def.material.friction);
-    s.restitution = zeroed(def.material.restitution);
-    s.rollingResistance = zeroed(def.material.rollingResistance);
-    s.tangentSpeed = zeroed(def.material.tangentSpeed);
-    s.category = def.filter.category;
-    s.mask = def.filter.mask;
-    s.group = def.filter.group;
-    return s;
-}
-
-MassProperties massOf(const BodyDef& def) {
-    std::vector<MassProperties> parts;
-    for (const ShapeDef& shape : def.shapes) {
-        parts.push_back(
-            massOf(hullOf<double>(shapeInfo(shape, {})), static_cast<double>(shape.density)));
-    }
-    return combine(parts);
-}
-
-/// The records of one body. Mass is summed in double and rounded once.
-struct BodyRecords {
-    BodyInfo info{};
-    BodyMotion motion{};
-    std::vector<ShapeInfo> shapes;
-};
-
-BodyRecords recordsOf(const BodyDef& def) {
-    BodyRecords r;
-    r.info.flags = static_cast<std::uint32_t>(def.type) |
-                   (def.fixedRotation ? BodyInfo::fixedRotation : 0u) |
-                   (def.maySleep ? BodyInfo::maySleep : 0u);
-    r.info.linearDamping = zeroed(def.linearDamping);
-    r.info.angularDamping = zeroed(def.angularDamping);
-    r.info.gravityScale = zeroed(def.gravityScale);
-    if (def.type == BodyType::Dynamic) {
-        const MassProperties mass = massOf(def);
-        r.info.localCenter =
-            zeroed(Vec2{static_cast<float>(mass.center.x), static_cast<float>(mass.center.y)});
-        r.info.mass = static_cast<float>(mass.mass);
-        r.info.inverseMass = static_cast<float>(1.0 / mass.mass);
-        if (!def.fixedRotation && mass.inertia > 0.0) {
-            r.info.inertia = static_cast<float>(mass.inertia);
-            r.info.inverseInertia = static_cast<float>(1.0 / mass.inertia);
-        }
-    }
-    const Rotation q = normalized(def.rotation);
-    r.motion.position = zeroed(def.position + rotate(q, r.info.localCenter));
-    r.motion.rotation = zeroed(q);
-    if (def.type != BodyType::Static) {
-        r.motion.velocity = zeroed(def.velocity);
-        r.motion.angularVelocity = zeroed(def.angularVelocity);
-    }
-    if (def.type == BodyType::Dynamic && def.asleep) r.motion.rest = BodyMotion::asleepBit;
-    for (const ShapeDef& shape : def.shapes) {
-        r.shapes.push_back(shapeInfo(shape, r.info.localCenter));
-    }
-    return r;
-}
-
-JointInfo jointInfo(const JointDef& def, const BodyInfo* a, const BodyInfo& b) {
-    JointInfo j{};
-    j.flags = static_cast<std::uint32_t>(def.kind) |
-              (def.collideConnected ? JointInfo::collideConnected : 0u) |
-              (def.spring.enabled ? JointInfo::spring : 0u) |
-              (def.limit.enabled ? JointInfo::limit : 0u) |
-              (def.motor.enabled ? JointInfo::motor | JointInfo::hasMotor : 0u);
-    j.bodyA = a != nullptr ? a->id : 0;
-    j.bodyB = b.id;
-    if (a != nullptr) j.anchorA = zeroed(def.anchorA - a->localCenter);
-    j.anchorB = zeroed(def.anchorB - b.localCenter);
-    j.reference = zeroed(normalized(def.reference));
-    j.length = zeroed(def.length);
-    j.target = zeroed(def.target);
-    j.maxForce = zeroed(def.maxForce);
-    j.springHertz = zeroed(def.spring.hertz);
-    j.springDamping = zeroed(def.spring.dampingRatio);
-    j.lower = zeroed(def.limit.lower);
-    j.upper = zeroed(def.limit.upper);
-    j.motorSpeed = zeroed(def.motor.speed);
-    j.motorMaxEffort = zeroed(def.motor.maxEffort);
-    return j;
+    return size + hull.radius;
 }
 
 /// Places in the order of ids given, those without one after all others in their own order.
@@ -128,7 +39,7 @@ std::vector<std::size_t> orderById(std::span<const Def> defs) {
 
 BodyId World::Data::add(std::span<const BodyDef> bodies, std::span<const JointDef> joints,
                         PlayerId owner) {
-    contactsToState();
+    changeDefinitions();
     WorldInfo& info = state.info();
     std::vector<std::uint32_t> placeOf(bodies.size());
     BodyId first = 0;
@@ -160,8 +71,6 @@ BodyId World::Data::add(std::span<const BodyDef> bodies, std::span<const JointDe
         state.joints.push_back(j);
         state.jointImpulses.push_back({});
     }
-    accelerators.definitionsStale = true;
-    roots.definitionsKnown = false;
     return first;
 }
 
@@ -171,7 +80,7 @@ void World::Data::build(const Scene& scene) {
     info.nextShape = scene.counters.nextShape;
     info.nextJoint = scene.counters.nextJoint;
     info.flags = (scene.sleep ? WorldInfo::sleep : 0u) | (scene.players ? WorldInfo::players : 0u);
-    info.gravity = zeroed(scene.gravity);
+    info.gravity = canonicalZero(scene.gravity);
     info.stepSeconds = scene.stepSeconds;
     info.substeps = scene.substeps;
     info.maxBodies = scene.limits.bodies;
@@ -181,10 +90,10 @@ void World::Data::build(const Scene& scene) {
     info.maxPlayers = scene.limits.players;
     if (scene.players) {
         info.maxSpawned = scene.players->maxSpawned;
-        info.maxImpulse = zeroed(scene.players->maxImpulse);
-        info.maxForce = zeroed(scene.players->maxForce);
+        info.maxImpulse = canonicalZero(scene.players->maxImpulse);
+        info.maxForce = canonicalZero(scene.players->maxForce);
         for (const Vec2 point : scene.players->spawnPoints) {
-            state.spawnPoints.push_back({zeroed(point)});
+            state.spawnPoints.push_back({canonicalZero(point)});
         }
         if (scene.players->body) {
             BodyRecords r = recordsOf(*scene.players->body);
@@ -212,77 +121,6 @@ void World::Data::build(const Scene& scene) {
     state.info().nextJoint = std::max(state.info().nextJoint, scene.counters.nextJoint);
 }
 
-void World::Data::removeMarked() {
-    if (removed.empty() && removedJoints.empty()) return;
-    contactsToState();
-    const std::size_t bodyCount = state.bodies.size();
-    removed.resize(bodyCount, 0);
-    removedJoints.resize(state.joints.size(), 0);
-    const auto gone = [&](BodyId id) {
-        const auto at = std::lower_bound(state.bodies.begin(), state.bodies.end(), id,
-                                         [](const BodyInfo& b, BodyId k) { return b.id < k; });
-        return at != state.bodies.end() &&
-               removed[static_cast<std::size_t>(at - state.bodies.begin())];
-    };
-    const auto wakeId = [&](BodyId id) {
-        if (const auto body = findBody(id)) wake(*body);
-    };
-
-    for (std::size_t i = 0; i < state.joints.size(); ++i) {
-        const JointInfo& j = state.joints[i];
-        if ((j.bodyA != 0 && gone(j.bodyA)) || gone(j.bodyB)) removedJoints[i] = 1;
-        if (!removedJoints[i]) continue;
-        wakeId(j.bodyA);
-        wakeId(j.bodyB);
-        if (PlayerRecord* player = findPlayer(j.owner); player && player->grab == j.id) {
-            player->grab = 0;
-        }
-    }
-    const auto bodyOfShape = [&](ShapeId id) {
-        return std::lower_bound(state.shapes.begin(), state.shapes.end(), id,
-                                [](const ShapeInfo& s, ShapeId k) { return s.id < k; })
-            ->body;
-    };
-    std::erase_if(state.contacts, [&](const ContactState& c) {
-        const BodyId a = bodyOfShape(c.shapeA);
-        const BodyId b = bodyOfShape(c.shapeB);
-        if (!gone(a) && !gone(b)) return false;
-        wakeId(a);
-        wakeId(b);
-        events.ends.push_back({c.shapeA, c.shapeB});
-        return true;
-    });
-    for (PlayerRecord& player : state.players) {
-        if (player.body != 0 && gone(player.body)) player.body = 0;
-    }
-    std::erase_if(state.shapes, [&](const ShapeInfo& s) { return gone(s.body); });
-
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < bodyCount; ++i) {
-        if (removed[i]) continue;
-        state.bodies[kept] = state.bodies[i];
-        state.motions[kept] = state.motions[i];
-        if (!forces.empty()) forces[kept] = forces[i];
-        ++kept;
-    }
-    state.bodies.resize(kept);
-    state.motions.resize(kept);
-    if (!forces.empty()) forces.resize(kept);
-    kept = 0;
-    for (std::size_t i = 0; i < state.joints.size(); ++i) {
-        if (removedJoints[i]) continue;
-        state.joints[kept] = state.joints[i];
-        state.jointImpulses[kept] = state.jointImpulses[i];
-        ++kept;
-    }
-    state.joints.resize(kept);
-    state.jointImpulses.resize(kept);
-    removed.clear();
-    removedJoints.clear();
-    accelerators.definitionsStale = true;
-    roots.definitionsKnown = false;
-}
-
 void World::Data::rebuildShapes() {
     assert(contactsInState);
     accelerators = {};
@@ -306,15 +144,13 @@ void World::Data::rebuildShapes() {
     for (std::uint32_t body = 0; body < bodies; ++body) {
         const BodyInfo& info = state.bodies[body];
         s.first[body] = shape;
+        if (info.type() != BodyType::Static) s.reach[body] = reachOf(body);
         if (info.type() == BodyType::Kinematic) s.kinematic.push_back(body);
         for (; shape < state.shapes.size() && state.shapes[shape].body == info.id; ++shape) {
             const ShapeInfo& record = state.shapes[shape];
             const Hull hull = hullOf<float>(record);
-            const bool turns = info.type() != BodyType::Static;
-            for (std::size_t v = 0; turns && v < static_cast<std::size_t>(hull.count); ++v) {
-                s.reach[body] = maxOf(s.reach[body], length(hull.vertices[v]) + hull.radius);
-            }
             s.hulls.push_back(hull);
+            s.sizes.push_back(sizeOf(hull));
             s.proxies.push_back({body, record.filter(), info.dynamic(), jointed[body] != 0});
         }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/collision/cast.h"
+#include "core/world/from_definition.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
@@ -31,12 +32,10 @@ std::vector<RayHit> World::castRay(Vec2 from, Vec2 to) const {
 std::vector<ShapeId> World::overlap(const ShapeDef& shape, const Pose& pose) const {
     std::vector<ShapeId> found;
     const WorldState& state = m_data->state;
-    ShapeInfo probe{};
-    probe.kind = static_cast<std::uint32_t>(shape.kind) |
-                 (static_cast<std::uint32_t>(shape.vertexCount) << 8);
-    probe.radius = shape.radius;
-    probe.vertices = shape.vertices;
-    const Hull hull = hullOf<float>(probe);
+    BodyDef probe;
+    probe.shapes.push_back(shape);
+    if (!check(probe, "shape")) return found;
+    const Hull hull = hullOf<float>(shapeInfo(shape, {}));
     const Bounds bounds = boundsOf(hull, pose);
     std::uint32_t body = 0;
     for (const ShapeInfo& other : state.shapes) {
@@ -61,7 +60,7 @@ std::vector<ContactView> World::contactViews() const {
     for (std::size_t i = plan.jointLinks; i < plan.links.size() && acc.planValid; ++i) {
         const std::uint8_t colour = plan.colourOfLink[i];
         const std::uint32_t contact = plan.links[i].source;
-        if (contact < colours.size()) colours[contact] = colour == overflowColour ? 255 : colour;
+        if (contact < colours.size()) colours[contact] = isSerial(colour) ? 255 : colour;
     }
     for (std::size_t i = 0; i < acc.contacts.size(); ++i) {
         const Contact& c = acc.contacts[i];

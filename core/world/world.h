@@ -2,7 +2,8 @@
 ///
 /// A world changes only through `step(commands)`. Its future is a function of its state and the
 /// commands: not of thread count, SIMD width, memory, history or time. Thread rule: one thread may
-/// step a world while no other reads it; several may read.
+/// step a world while no other reads it; several may read, but for `save`, `fullRoot`, `contacts`,
+/// `contactViews`, copies and `firstDifference`, which gather the contacts on first use.
 #pragma once
 
 #include <cstddef>
@@ -140,6 +141,7 @@ class World {
     [[nodiscard]] std::span<const JointImpulses> jointImpulses() const;  ///< place i: joint i
     [[nodiscard]] std::span<const PlayerRecord> players() const;
     [[nodiscard]] std::vector<ContactState> contacts() const;
+    /// Empty after a restore or a copy until the next step: views come from the last step's work.
     [[nodiscard]] std::vector<ContactView> contactViews() const;
 
     /// Place of a body in `bodies()`, if it is there.
@@ -152,7 +154,7 @@ class World {
 
     /// All shapes the ray from `from` to `to` meets, ordered by (fraction, shape id).
     [[nodiscard]] std::vector<RayHit> castRay(Vec2 from, Vec2 to) const;
-    /// All shapes that overlap the shape at the pose, by id.
+    /// All shapes that overlap the shape at the pose, by id; none for a shape `check` refuses.
     [[nodiscard]] std::vector<ShapeId> overlap(const ShapeDef& shape, const Pose& pose) const;
 
     /// Forgets everything that is not state. Only speed changes: a test calls it at random ticks.

@@ -24,6 +24,7 @@ struct Shapes {
     std::vector<Hull> hulls;           // by shape
     std::vector<ShapeProxy> proxies;   // by shape
     std::vector<std::uint32_t> first;  // by body: its first shape; one more at the end
+    std::vector<float> sizes;          // by shape, m: from its middle to its farthest point
     std::vector<float> reach;  // by body, m: farthest point of a shape from the centre; 0: static
     std::vector<ShapePair> forbidden;  // body places that a joint keeps from touching, sorted
     std::vector<ConstraintPlaces> jointBodies;  // by joint
@@ -44,10 +45,14 @@ struct Accelerators {
     SoftStep solver;
 };
 
-/// How a body takes part in a step: not at all; moved by it; a kinematic body that moves; asleep.
-enum : std::uint8_t { restsNow = 0, movesNow = 1, drivesNow = 2, sleepsNow = 4 };
+/// How a body takes part in a step: not at all; moved by it; a kinematic body that moves; asleep,
+/// and since when: what has slept from its start has contacts that nobody has looked at yet.
+enum : std::uint8_t { restsNow = 0, movesNow = 1, drivesNow = 2, sleepsNow = 4, newToSleep = 8 };
 constexpr bool isActive(std::uint8_t activity) {
     return (activity & (movesNow | drivesNow)) != 0;
+}
+constexpr bool isAsleep(std::uint8_t activity) {
+    return (activity & sleepsNow) != 0;
 }
 
 struct World::Data {
@@ -74,14 +79,24 @@ struct World::Data {
     void wake(std::uint32_t body);
     [[nodiscard]] std::span<Contact> contacts() { return accelerators.contacts; }
     void contactsToState() const;
+    /// To be called before bodies, shapes or joints come or go.
+    void changeDefinitions();
 
     // definitions.cpp
     /// Appends bodies and joints that have been checked; returns the first new body's id.
     BodyId add(std::span<const BodyDef> bodies, std::span<const JointDef> joints, PlayerId owner);
     void build(const Scene& scene);
     /// Takes out what was marked, wakes what it touched, reports its contacts as ended.
-    void removeMarked();
+    void removeMarked();  // removal.cpp
+    void closeGaps();
     void rebuildShapes();
+
+    // spawn.cpp
+    Rejection judge(const Spawn& spawn, PlayerId author);
+    [[nodiscard]] std::size_t spawnedBy(PlayerId player);
+    [[nodiscard]] bool crowded(const ShapeInfo& shape, const Pose& pose) const;
+    /// Farthest point of the body's shapes from its centre, m.
+    [[nodiscard]] float reachOf(std::uint32_t body) const;
 
     // commands.cpp
     void applyCommands(std::span<const Command> commands);
