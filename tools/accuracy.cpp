@@ -99,14 +99,24 @@ void print(const AccuracyResult& r) {
     std::printf("penetration  max %s m, mean at the end %s m\n", number(r.maxPenetration).c_str(),
                 number(r.meanPenetration).c_str());
     std::printf("joint error  max %s m\n", number(r.maxJointError).c_str());
-    if (r.pendulum)
-        std::printf("pendulum     period %.7f s, exact %.7f s, error %s; energy loss %s %%\n",
-                    r.pendulum->period, r.pendulum->exact,
-                    number(std::abs(r.pendulum->period / r.pendulum->exact - 1.0)).c_str(),
-                    number(100.0 * r.pendulum->energyLoss).c_str());
+    for (const std::string& line : closedForms(r)) std::printf("%s\n", line.c_str());
+}
+
+std::vector<std::string> closedForms(const AccuracyResult& r) {
+    std::vector<std::string> lines;
+    if (r.pendulum) {
+        char periods[96];
+        std::snprintf(periods, sizeof periods, "pendulum     period %.7f s, exact %.7f s",
+                      r.pendulum->period, r.pendulum->exact);
+        lines.push_back(
+            periods +
+            (", error " + number(std::abs(r.pendulum->period / r.pendulum->exact - 1.0))) +
+            "; energy loss " + number(100.0 * r.pendulum->energyLoss) + " %");
+    }
     if (r.ballistic)
-        std::printf("ballistic    off the parabola by %s m after %s s\n",
-                    number(r.ballistic->maxError).c_str(), number(r.ballistic->seconds).c_str());
+        lines.push_back("ballistic    off the parabola by " + number(r.ballistic->maxError) +
+                        " m after " + number(r.ballistic->seconds) + " s");
+    return lines;
 }
 
 }  // namespace huestep::tools

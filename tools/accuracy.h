@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/scene/measure.h"
 #include "core/world/world.h"
@@ -53,6 +55,10 @@ class Accuracy {
 };
 
 Json asJson(const AccuracyResult& result);
+
+/// The comparisons with closed forms that the scene allows, a line each.
+std::vector<std::string> closedForms(const AccuracyResult& result);
+
 void print(const AccuracyResult& result);  ///< lines of text on standard output
 
 }  // namespace huestep::tools

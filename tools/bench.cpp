@@ -7,7 +7,6 @@
 
 #include <memory>
 
-#include "tools/accuracy.h"
 #include "tools/clock.h"
 #include "tools/command.h"
 #include "tools/engines.h"
@@ -68,10 +67,8 @@ Status measureErrors(const NamedScene& scene, BenchResult& row, Progress& progre
         accuracy.watch(tick, (*engine)->motions(), (*engine)->contactCount() > 0);
         progress.advance();
     }
-    const AccuracyResult errors = accuracy.finish((*engine)->motions());
+    row.errors = accuracy.finish((*engine)->motions());
     row.hash = (*engine)->hash();
-    row.maxPenetration = errors.maxPenetration;
-    row.maxJointError = errors.maxJointError;
     return Done{};
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/accuracy.h"
 #include "tools/text.h"
 
 namespace huestep::tools {
@@ -19,8 +20,7 @@ struct BenchResult {
     std::vector<std::uint64_t> leastByTick;  ///< ns, least over the repeats
     std::uint64_t hash = 0;                  ///< of all motions at the end
     bool sameHash = true;                    ///< every repeat ended with it
-    double maxPenetration = 0.0;             ///< m
-    double maxJointError = 0.0;              ///< m
+    AccuracyResult errors;
 
     /// Sum over ticks of the least time of each, divided by the ticks, ms: what the engine needs
     /// when nothing else disturbs the machine.

@@ -39,8 +39,9 @@ Json benchJson(const std::vector<BenchResult>& results) {
                           {"q3", quantile(r.repeats, 0.75)},
                           {"psm", r.psm()}}},
                         {"hash", hex(r.hash)},
-                        {"max_penetration_m", r.maxPenetration},
-                        {"max_joint_error_m", r.maxJointError}});
+                        {"max_penetration_m", r.errors.maxPenetration},
+                        {"max_joint_error_m", r.errors.maxJointError},
+                        {"accuracy", asJson(r.errors)}});
     return {{"machine", machineName()},
             {"compiler", compilerName()},
             {"commit", commitName()},
@@ -51,15 +52,19 @@ void printBench(const std::vector<BenchResult>& results) {
     std::printf("%s; %s; commit %s\n", machineName().c_str(), compilerName().c_str(),
                 commitName().c_str());
     Table table({"scene", "engine", "threads", "ticks", "psm, ms", "min", "q1", "median", "q3",
-                 "ratio", "penetration, m", "joint error, m", "hash"});
+                 "ratio", "drift", "penetration, m", "joint error, m", "hash"});
     for (const BenchResult& r : results)
         table.add({r.scene, r.engine, std::to_string(r.threads), std::to_string(r.ticks),
                    number(r.psm()), number(quantile(r.repeats, 0.0)),
                    number(quantile(r.repeats, 0.25)), number(quantile(r.repeats, 0.5)),
-                   number(quantile(r.repeats, 0.75)), ratioOf(r, results), number(r.maxPenetration),
-                   number(r.maxJointError),
+                   number(quantile(r.repeats, 0.75)), ratioOf(r, results),
+                   number(r.errors.energyDrift), number(r.errors.maxPenetration),
+                   number(r.errors.maxJointError),
                    hex(r.hash) + (r.sameHash ? "" : " (not in every repeat)")});
     table.print();
+    for (const BenchResult& r : results)
+        for (const std::string& line : closedForms(r.errors))
+            std::printf("%s, %s, %s\n", r.scene.c_str(), r.engine.c_str(), line.c_str());
 }
 
 std::string benchCsv(const std::vector<BenchResult>& results) {
@@ -73,8 +78,8 @@ std::string benchCsv(const std::vector<BenchResult>& results) {
                ',' + std::to_string(r.threads) + ',' + quoted(r.scene) + ',' + r.engine + ',' +
                std::to_string(r.ticks) + ',' + number(r.psm());
         for (const double q : {0.0, 0.25, 0.5, 0.75}) csv += ',' + number(quantile(r.repeats, q));
-        csv += ',' + hex(r.hash) + ',' + number(r.maxPenetration) + ',' + number(r.maxJointError) +
-               '\n';
+        csv += ',' + hex(r.hash) + ',' + number(r.errors.maxPenetration) + ',' +
+               number(r.errors.maxJointError) + '\n';
     }
     return csv;
 }

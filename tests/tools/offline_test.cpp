@@ -158,6 +158,7 @@ TEST(Bench, PutsEnginesSideBySideWithHashesAndErrors) {
         EXPECT_LE(ms["psm"], ms["median"]);
         EXPECT_GE(row["max_penetration_m"], 0.0);
         EXPECT_GE(row["max_joint_error_m"], 0.0);
+        EXPECT_TRUE(row["accuracy"]["energy_drift"].is_number());
     }
     EXPECT_EQ(linesWith(textOf(csv), ""), 4);
 }
