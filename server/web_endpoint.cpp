@@ -85,6 +85,7 @@ struct WebEndpoint::Inside {
     };
 
     Inside(Host& itsHost, WebConfig given);
+    ~Inside();
 
     Status start();
     Status makeContext();
@@ -131,6 +132,12 @@ WebEndpoint::Inside::Inside(Host& itsHost, WebConfig given)
             TokenBucket(config.limits.requestsPerSecond, config.limits.requestBurst, uv_hrtime())) {
 }
 
+/// On a loop that is not its own, libwebsockets starts to close at the first `lws_context_destroy`
+/// and frees at a second one, once the loop has closed its handles; the context is null then.
+WebEndpoint::Inside::~Inside() {
+    if (context) lws_context_destroy(context);
+}
+
 Status WebEndpoint::Inside::start() {
     Result<protocol::Address> wanted = protocol::parseAddress(config.listen, true);
     if (!wanted) return wanted.error();
@@ -173,6 +180,7 @@ Status WebEndpoint::Inside::makeContext() {
     info.server_string = "huestep";
     info.options = LWS_SERVER_OPTION_LIBUV | LWS_SERVER_OPTION_VALIDATE_UTF8;
     info.foreign_loops = loops;
+    info.pcontext = &context;
     info.user = this;
     info.fd_limit_per_thread = static_cast<unsigned>(config.limits.connections + 16);
     info.max_http_header_data = config.limits.headerBytes;
@@ -394,7 +402,7 @@ void WebEndpoint::Inside::afterTick(const Session& session) {
 }
 
 void WebEndpoint::Inside::beginStop() {
-    if (stopping || !context) return;
+    if (stopping) return;
     stopping = true;
     listener.close();
     if (viewerCount() == 0) return endStop();
@@ -407,7 +415,7 @@ void WebEndpoint::Inside::beginStop() {
 }
 
 void WebEndpoint::Inside::endStop() {
-    lws_context_destroy(std::exchange(context, nullptr));
+    lws_context_destroy(context);
     uv_close(reinterpret_cast<uv_handle_t*>(std::exchange(farewell, nullptr)),
              [](uv_handle_t* handle) { delete reinterpret_cast<uv_timer_t*>(handle); });
 }
