@@ -91,6 +91,8 @@ class Replica {
     [[nodiscard]] bool following() const { return m_state == State::Following; }
     [[nodiscard]] PlayerId player() const { return m_statistics.player; }
     [[nodiscard]] std::uint64_t committed() const { return m_committed; }
+    /// Own commands that no committed frame has shown yet.
+    [[nodiscard]] std::size_t pendingCommands() const { return m_pending.size(); }
     [[nodiscard]] float ticksPerSecond() const { return m_ticksPerSecond; }
     [[nodiscard]] const std::optional<protocol::Bye>& bye() const { return m_bye; }
     /// The counts, without tick, root and latencies: cheap.

@@ -40,7 +40,7 @@ class SimulatedJournal : public server::JournalSink {
         }
         if (!warning.empty()) warnings.push_back(warning);
         hub.committed(session, batch.back().commits);
-        m_readyAt = now + m_dice.between(0, 30) * ms;
+        m_readyAt = now + m_dice.between(0, m_dice.once(10) ? 400 : 30) * ms;
         return Done{};
     }
 

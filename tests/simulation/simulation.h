@@ -105,6 +105,7 @@ class Simulation {
         }
         for (std::size_t i = 0; i < m_seats.size(); ++i) {
             checkClient(i, *m_seats[i].client, roots, frames);
+            checkInputs(i, m_seats[i].client->replica(), counted);
         }
     }
 
@@ -223,6 +224,17 @@ class Simulation {
         }
         const client::Statistics& counts = client.replica().counts();
         EXPECT_EQ(counts.committedLost, 0u) << "client " << place;
+    }
+
+    /// A client that kept its seat and waits for nothing: each of its commands counted, once.
+    static void checkInputs(std::size_t place, const client::Replica& replica,
+                            const std::set<std::pair<PlayerId, std::uint64_t>>& counted) {
+        const client::Statistics& counts = replica.counts();
+        if (counts.resumes + 1 != counts.connections || replica.pendingCommands() != 0) return;
+        const auto first = counted.lower_bound({replica.player(), 0});
+        const auto last = counted.lower_bound({replica.player() + 1, 0});
+        EXPECT_EQ(static_cast<std::uint64_t>(std::distance(first, last)), counts.commandsSent)
+            << "inputs of client " << place;
     }
 
     Dice m_dice;

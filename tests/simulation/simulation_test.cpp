@@ -27,6 +27,11 @@ void endWell(Simulation& simulation) {
     simulation.disk.revive();
     EXPECT_TRUE(simulation.converge(20'000 * ms)) << "no agreement after the faults stopped";
     if (testing::Test::HasFatalFailure()) return;
+    for (std::size_t i = 0; i < simulation.clients(); ++i) simulation.client(i).playing = false;
+    simulation.run(3'000 * ms);
+    for (std::size_t i = 0; i < simulation.clients(); ++i) {
+        EXPECT_EQ(simulation.client(i).replica().pendingCommands(), 0u) << "client " << i;
+    }
     expectNoMismatch(simulation);
     Executor two(2);
     simulation.checkAgainstJournal();
