@@ -276,7 +276,7 @@ std::string faultOf(const JointInfo& j) {
     if (!within(j.motorSpeed, -maxSpeed, maxSpeed)) return "motorSpeed: out of range";
     if (!within(j.springHertz, 0, 1000)) return "springHertz: out of range";
     if (!within(j.springDamping, 0, 1000)) return "springDamping: out of range";
-    if (j.lower > j.upper) return "lower: above upper";
+    if (j.has(JointInfo::limit) && j.lower > j.upper) return "lower: above upper";
     return {};
 }
 

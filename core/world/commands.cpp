@@ -181,9 +181,10 @@ class Applier {
                 return apply(MoveGrab{action.target});
             }
         }
+        if (tooFar(place, action.point)) return Rejection::TooFar;
         if (!roomFor(0, 0, 1)) return Rejection::OverLimit;
         if (author().grab != 0) markJoint(author().grab);
-        m_world.contactsToState();
+        m_world.changeDefinitions();
         const BodyMotion& motion = m_state.motions[place];
         const Vec2 anchor = unrotate(motion.rotation, action.point - motion.position);
         JointInfo j{};

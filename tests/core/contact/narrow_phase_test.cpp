@@ -19,6 +19,7 @@ class PairOfShapes {
         contact.state.shapeA = 1;
         contact.state.shapeB = 2;
         contact.bodyB = contact.placeB = 1;
+        contact.slack = 0.05f;
         for (const Hull& hull : m_hulls) {
             contact.roundness = maxOf(contact.roundness, hull.radius);
             for (std::size_t i = 0; i < static_cast<std::size_t>(hull.count); ++i) {
@@ -33,6 +34,7 @@ class PairOfShapes {
         Contact bare{};
         bare.state = contact.state;
         bare.bodyB = bare.placeB = 1;
+        bare.slack = contact.slack;
         bare.reach = contact.reach;
         bare.roundness = contact.roundness;
         bare.pointCount = 2;

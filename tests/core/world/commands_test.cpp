@@ -253,6 +253,18 @@ TEST(Commands, AreRejectedForEveryReasonThereIs) {
     expect(Rejection::NothingGrabbed, 1, Release{});
     expect(Rejection::NoMotor, 1, SetMotor{plainId, true, 1.0f});
     expect(Rejection::PlayerExists, 0, AddPlayer{1});
+
+    expect(Rejection::TooFar, 1, ApplyImpulse{boxId, {1.0f, 0.0f}, {0.0f, 5.0f}});
+    expect(Rejection::TooFar, 1, ApplyForce{boxId, {1.0f, 0.0f}, {2.0f, 3.0f}});
+    expect(Rejection::TooFar, 1, Grab{boxId, {0.0f, 1.0f}, {}});
+    BodyDef large = boxAt({}, 20.0f);
+    expect(Rejection::NotAllowed, 1, Spawn{{large}, {}});
+    large.shapes.assign(9, ShapeDef::circle({}, 0.5f));
+    expect(Rejection::NotAllowed, 1, Spawn{{large}, {}});
+    BodyDef crowd = bodyAt(BodyType::Static, {60.0f, 60.0f}, ShapeDef::circle({}, 0.5f));
+    crowd.shapes.assign(65, crowd.shapes[0]);
+    ASSERT_EQ(desk.ask(0, Spawn{{crowd}, {}}), Rejection::None);
+    expect(Rejection::TooCrowded, 1, Spawn{{boxAt({60.0f, 60.0f})}, {}});
 }
 
 TEST(Commands, KeepEveryCapOfTheWorld) {
@@ -278,7 +290,7 @@ TEST(Commands, OfPlayersBeyondATicksCapAreRejectedThoseOfTheHostAreNot) {
     std::vector<Command> commands;
     for (std::uint64_t k = 0; k < 8; ++k) {
         commands.push_back({0, 100 + k, SetVelocity{fanId, {}, 0.0f}});
-        commands.push_back({1, 100 + k, ApplyForce{boxId, {}, {}}});
+        commands.push_back({1, 100 + k, ApplyForce{boxId, {}, {0.0f, 3.0f}}});
     }
     const Events& events = desk.world.step(commands);
     ASSERT_EQ(events.commands.size(), 16u);
@@ -375,7 +387,7 @@ TEST(Commands, OnABodyRemovedInTheSameTickFindNone) {
 
 TEST(Commands, HaveAReasonInWordsForEveryNumber) {
     std::vector<std::string_view> seen;
-    for (std::uint16_t i = 0; i <= static_cast<std::uint16_t>(Rejection::PlayerExists); ++i) {
+    for (std::uint16_t i = 0; i <= static_cast<std::uint16_t>(Rejection::TooCrowded); ++i) {
         const std::string_view words = describe(static_cast<Rejection>(i));
         EXPECT_NE(words, "unknown reason");
         EXPECT_EQ(std::count(seen.begin(), seen.end(), words), 0) << words;
