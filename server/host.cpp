@@ -200,7 +200,7 @@ void Host::Inside::closeDueTicks() {
         for (std::uint32_t i = 0; i < due; ++i) {
             closed = hub.closeTick(*s.session, uv_hrtime()) || closed;
         }
-        if (due > 0) sockets.flush();
+        if (due > 0) sockets.flush(*s.session);
         if (!closed) continue;
         for (const auto& part : parts) part->afterTick(*s.session);
     }

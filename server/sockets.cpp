@@ -157,6 +157,14 @@ void Sockets::flush() {
     for (auto next = m_sockets.begin(); next != m_sockets.end();) flush(*(next++)->second);
 }
 
+void Sockets::flush(const Session& session) {
+    for (auto next = m_sockets.begin(); next != m_sockets.end();) {
+        Socket& socket = *(next++)->second;
+        const Connection* connection = m_hub.connection(socket.id);
+        if (connection && connection->session() == &session) flush(socket);
+    }
+}
+
 void Sockets::flush(Socket& socket) {
     if (socket.closing) return;
     const Instant now = uv_hrtime();

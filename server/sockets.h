@@ -28,6 +28,8 @@ class Sockets {
 
     /// Writes what the hub has for each client, closes what is finished.
     void flush();
+    /// The same for the clients of one session: what its tick has to say.
+    void flush(const Session& session);
     void stopListening();
     /// Closes every socket, whatever it still holds.
     void closeAll();
