@@ -119,31 +119,58 @@ Error refusal(const LogStore& store, const std::string& name, std::uint64_t offs
     return Error{store.describe(name) + ": byte " + std::to_string(offset) + ": " + reason};
 }
 
-/// Reads one segment into `contents`, which stand where the segment before it ended.
-Status readSegment(LogStore& store, const std::string& name, bool first, bool newest,
-                   std::uint64_t fromTick, JournalContents& contents) {
-    const Result<std::vector<std::byte>> file = store.read(name);
-    if (!file) return file.error();
-    Result<SegmentHeader> header = journal::readSegmentHeader(*file);
+/// The header of a segment, which must continue what `contents` holds if there is any.
+Result<SegmentHeader> readFittingHeader(const LogStore& store, const std::string& name,
+                                        std::span<const std::byte> file,
+                                        const JournalContents& contents) {
+    Result<SegmentHeader> header = journal::readSegmentHeader(file);
     if (!header) return Error{store.describe(name) + ": " + header.error().message};
+    const std::string start = "the segment starts at tick " + std::to_string(header->firstTick);
     if (journal::segmentName(header->firstTick) != name) {
-        return refusal(store, name, 40,
-                       "the segment starts at tick " + std::to_string(header->firstTick) +
-                           ", which is not what the file is called");
+        return refusal(store, name, 40, start + ", which is not what the file is called");
     }
-    if (!first && header->firstTick != contents.nextTick) {
+    if (contents.segment.empty()) return header;
+    if (header->firstTick != contents.nextTick) {
         return refusal(store, name, 40,
-                       "the segment starts at tick " + std::to_string(header->firstTick) +
-                           " where tick " + std::to_string(contents.nextTick) + " is due");
+                       start + " where tick " + std::to_string(contents.nextTick) + " is due");
     }
-    if (!first && header->chain != contents.chain) {
+    if (header->chain != contents.chain) {
         return refusal(store, name, 48, "the segment does not continue the one before it");
     }
-    if (!first && header->identity.session != contents.identity.session) {
+    if (header->identity.session != contents.identity.session) {
         return refusal(store, name, 56,
                        "the segment is of session " + header->identity.session +
                            ", the one before it of " + contents.identity.session);
     }
+    return header;
+}
+
+/// Moves the walk over the record it stands at, and keeps its entry unless it is below `fromTick`.
+Status takeRecord(SegmentWalk& walk, const RecordHeader& record, std::uint64_t fromTick,
+                  std::vector<JournalEntry>& entries) {
+    if (record.tick >= fromTick) {
+        Result<JournalEntry> entry = journal::readEntry(
+            record,
+            walk.bytes.subspan(walk.offset + journal::recordHeaderBytes, record.payloadBytes));
+        if (!entry) return entry.error();
+        entries.push_back(std::move(entry).value());
+    }
+    walk.chain = journal::nextChain(walk.chain, record.headerHash);
+    walk.offset += record.recordBytes();
+    if (record.type == journal::RecordType::Frame) {
+        walk.anyFrame = true;
+        ++walk.nextTick;
+    }
+    return Done{};
+}
+
+/// Reads one segment into `contents`, which stand where the segment before it ended.
+Status readSegment(LogStore& store, const std::string& name, bool newest, std::uint64_t fromTick,
+                   JournalContents& contents) {
+    const Result<std::vector<std::byte>> file = store.read(name);
+    if (!file) return file.error();
+    Result<SegmentHeader> header = readFittingHeader(store, name, *file, contents);
+    if (!header) return header.error();
     SegmentWalk walk{*file, journal::seedOf(*file), header->identity.epoch, 0, header->firstTick};
     walk.chain = walk.seed;
     while (walk.offset < file->size()) {
@@ -157,19 +184,8 @@ Status readSegment(LogStore& store, const std::string& name, bool first, bool ne
             contents.tornFile = store.describe(name);
             break;
         }
-        if (record->tick >= fromTick) {
-            const auto payload = std::span(*file).subspan(walk.offset + journal::recordHeaderBytes,
-                                                          record->payloadBytes);
-            Result<JournalEntry> entry = journal::readEntry(*record, payload);
-            if (!entry) return refusal(store, name, walk.offset, entry.error().message);
-            contents.entries.push_back(std::move(entry).value());
-        }
-        walk.chain = journal::nextChain(walk.chain, record->headerHash);
-        walk.offset += record->recordBytes();
-        if (record->type == journal::RecordType::Frame) {
-            walk.anyFrame = true;
-            ++walk.nextTick;
-        }
+        const Status taken = takeRecord(walk, *record, fromTick, contents.entries);
+        if (!taken) return refusal(store, name, walk.offset, taken.error().message);
     }
     contents.identity = std::move(header->identity);
     contents.segment = name;
@@ -225,7 +241,7 @@ Result<JournalContents> readJournal(LogStore& store, std::uint64_t fromTick) {
     JournalContents contents;
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const bool newest = i + 1 == segments.size();
-        const Status status = readSegment(store, segments[i], i == 0, newest, fromTick, contents);
+        const Status status = readSegment(store, segments[i], newest, fromTick, contents);
         if (!status) return status.error();
     }
     const Result<std::vector<std::uint64_t>> ticks = snapshotTicks(store);
