@@ -20,6 +20,7 @@ class PairOfShapes {
         contact.state.shapeB = 2;
         contact.bodyB = contact.placeB = 1;
         contact.slack = 0.05f;
+        for (const Hull& hull : m_hulls) {
             contact.roundness = maxOf(contact.roundness, hull.radius);
             for (std::size_t i = 0; i < static_cast<std::size_t>(hull.count); ++i) {
                 contact.reach = maxOf(contact.reach, length(hull.vertices[i]) + hull.radius);
@@ -36,6 +37,7 @@ class PairOfShapes {
         bare.slack = contact.slack;
         bare.reach = contact.reach;
         bare.roundness = contact.roundness;
+        bare.pointCount = 2;
         contact = bare;
         remakeManifold(contact, input());
     }
