@@ -54,6 +54,7 @@ inline constexpr std::size_t maxLeaves = 4'096;
 inline constexpr std::size_t maxViewBodies = 131'072;
 inline constexpr std::size_t maxViewShapes = 262'144;
 inline constexpr std::size_t maxViewContacts = 262'144;
+inline constexpr std::size_t maxViewJoints = 131'072;
 inline constexpr float maxTicksPerSecond = 1'000.0f;
 inline constexpr std::uint32_t maxInputDelay = 600;
 

@@ -235,4 +235,5 @@ struct View {
   bodies @7 :List(UInt32);            # with shapes: the id of each body
   shapes @8 :List(Shape);             # at most 262,144
   vertices @9 :List(Float32);         # x, y of the shapes' vertices, in the centre-of-mass frame
+  joints @10 :List(Float32);          # x, y, x, y: the two ends of each, m, in the world; <= 131,072
 }

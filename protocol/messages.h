@@ -176,6 +176,12 @@ struct View {
         std::uint8_t colour = 0;  ///< graph colour; 255: overflow
         friend bool operator==(const Contact&, const Contact&) = default;
     };
+    /// The points that a joint holds together or apart; a mouse joint's first is its target.
+    struct Joint {
+        Vec2 a;
+        Vec2 b;
+        friend bool operator==(const Joint&, const Joint&) = default;
+    };
     std::uint64_t tick = 0;
     std::uint64_t root = 0;
     std::uint32_t players = 0;
@@ -185,6 +191,7 @@ struct View {
     std::vector<Pose> poses;          ///< of centres of mass
     std::vector<std::uint8_t> flags;  ///< a body: bit 0 asleep, bits 1–2 type, bit 3 a player's
     std::vector<Contact> contacts;
+    std::vector<Joint> joints;
     friend bool operator==(const View&, const View&) = default;
 };
 

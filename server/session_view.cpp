@@ -12,7 +12,7 @@ constexpr std::uint8_t asleepFlag = 1;
 constexpr int typeShift = 1;
 constexpr std::uint8_t playersFlag = 8;
 
-/// A view holds at most so many bodies, shapes and contacts: what is beyond is not drawn.
+/// A view holds at most so many bodies, shapes, contacts and joints: what is beyond is not drawn.
 constexpr std::size_t maxDrawn = 32'768;
 
 std::uint8_t flagsOf(const BodyInfo& body, const BodyMotion& motion, bool players) {
@@ -47,6 +47,20 @@ void addContacts(const World& world, protocol::View& view) {
     }
 }
 
+void addJoints(const World& world, protocol::View& view) {
+    const auto motions = world.motions();
+    for (const JointInfo& joint : world.joints()) {
+        if (view.joints.size() == maxDrawn) return;
+        const std::optional<std::uint32_t> a = world.find(joint.bodyA);
+        const std::optional<std::uint32_t> b = world.find(joint.bodyB);
+        if (!a || !b) continue;
+        const Vec2 first = joint.kind() == JointKind::Mouse
+                               ? joint.target
+                               : transform(motions[*a].pose(), joint.anchorA);
+        view.joints.push_back({first, transform(motions[*b].pose(), joint.anchorB)});
+    }
+}
+
 }  // namespace
 
 protocol::View Session::view(bool withShapes) const {
@@ -74,6 +88,7 @@ protocol::View Session::view(bool withShapes) const {
     }
     if (withShapes) addShapes(m_world, view);
     addContacts(m_world, view);
+    addJoints(m_world, view);
     return view;
 }
 

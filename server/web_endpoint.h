@@ -57,7 +57,8 @@ struct WebCounters {
 
 class WebEndpoint : public HostPart {
  public:
-    /// Binds the address and adds itself to the host. The sentence names the address.
+    /// Binds the address and adds itself to the host, which must not go before it. The sentence of
+    /// a failure names the address.
     static Result<std::shared_ptr<WebEndpoint>> open(Host& host, WebConfig config);
     ~WebEndpoint() override;
     WebEndpoint(const WebEndpoint&) = delete;

@@ -65,6 +65,7 @@ export class Painter {
       lines: looks.map((look) => value(`${look}-line`)),
       palette: Array.from({ length: paletteSize }, (_, i) => value(`colour-${i}`)),
       overflow: value('overflow'),
+      joint: value('joint'),
     };
   }
 
@@ -91,6 +92,7 @@ export class Painter {
     this.drawGrid();
     if (!view) return;
     this.drawBodies(view);
+    this.drawJoints(view.joints);
     this.drawContacts(view);
   }
 
@@ -149,6 +151,32 @@ export class Painter {
     canvas.lineJoin = 'round';
     canvas.strokeStyle = this.style.lines[look];
     canvas.stroke();
+  }
+
+  /** A line from end to end, and a pin where they meet. @param {Float32Array} joints */
+  drawJoints(joints) {
+    if (joints.length === 0) return;
+    const { canvas, camera } = this;
+    const pin = Math.min(2.2, Math.max(0.8, camera.scale / 14)) / camera.scale;
+    canvas.strokeStyle = this.style.joint;
+    canvas.fillStyle = this.style.joint;
+    canvas.lineWidth = Math.min(1.5, Math.max(0.6, camera.scale / 18)) / camera.scale;
+    // Many short paths: a long one of crossing lines is slow to stroke.
+    for (let first = 0; first < joints.length; first += 4 * shapesAPath) {
+      const end = Math.min(joints.length, first + 4 * shapesAPath);
+      canvas.beginPath();
+      for (let i = first; i < end; i += 4) {
+        canvas.moveTo(joints[i], joints[i + 1]);
+        canvas.lineTo(joints[i + 2], joints[i + 3]);
+      }
+      canvas.stroke();
+      canvas.beginPath();
+      for (let i = first; i < end; i += 4) {
+        canvas.moveTo(joints[i + 2] + pin, joints[i + 3]);
+        canvas.arc(joints[i + 2], joints[i + 3], pin, 0, 2 * Math.PI);
+      }
+      canvas.fill();
+    }
   }
 
   /** Discs between moving bodies, rings against what does not move, squares for the overflow. @param {import('./view.js').View} view */

@@ -19,6 +19,7 @@ export class Legend {
   constructor(bodies, moving, fixed) {
     this.lists = [moving, fixed, moving];
     this.lookCounts = looks.map((look) => this.entry(bodies, `body ${look}`, words[look], look));
+    this.joints = this.entry(bodies, 'joint', 'joints', 'joint');
     /** Entries come when their colour is first seen, and stay. @type {Map<string, {item: HTMLElement, count: HTMLElement}>} */
     this.colours = new Map();
   }
@@ -50,8 +51,10 @@ export class Legend {
     return made;
   }
 
-  /** @param {number[]} lookCounts bodies of each look @param {import('./view.js').Contacts} contacts */
-  show(lookCounts, contacts) {
+  /** @param {number[]} lookCounts bodies of each look @param {import('./view.js').View} view */
+  show(lookCounts, { contacts, joints }) {
+    this.joints.count.textContent = String(joints.length / 4);
+    this.joints.item.classList.toggle('none', joints.length === 0);
     this.lookCounts.forEach(({ item, count }, look) => {
       count.textContent = String(lookCounts[look]);
       item.classList.toggle('none', lookCounts[look] === 0);

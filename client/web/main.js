@@ -49,6 +49,7 @@ const huestep = {
   bodies: 0,
   asleep: 0,
   contacts: 0,
+  joints: 0,
   definitions: 0,
   /** Frames that came, that were drawn, and that newer ones overtook before the screen's turn. */
   received: 0,
@@ -143,7 +144,7 @@ function showNumbers(view) {
     }
   }
   Object.assign(huestep, { players: view.players, bodies: view.bodies, contacts: view.contacts.count,
-                           asleep, definitions: view.definitions });
+                           joints: view.joints.length / 4, asleep, definitions: view.definitions });
   looks.forEach((look, i) => { huestep.looks[look] = counts[i]; });
   shown.tick.textContent = String(view.tick);
   shown.root.textContent = view.root;
@@ -154,7 +155,7 @@ function showNumbers(view) {
   const now = performance.now();
   if (now - legendAt < refreshMs) return;
   legendAt = now;
-  legend.show(counts, view.contacts);
+  legend.show(counts, view);
   byId('scale').textContent = `${Number(painter.gridStep().toPrecision(1))} m`;
   byId('ruler').style.width = `${painter.gridStep() * camera.scale}px`;
 }

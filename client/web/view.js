@@ -17,7 +17,7 @@
  *   data bytes   0 tick u64   8 root u64   16 players u32   20 definitions u32
  *   pointers     0 poses f32[4n]   1 flags u8[n]   2 contacts {x f32, y f32, colour u8}[]
  *                3 bodies u32[n]   4 shapes {body u32, radius f32, kind u16, vertexCount u8}[]
- *                5 vertices f32[]
+ *                5 vertices f32[]   6 joints f32[4m]
  *
  * Little-endian, as the bytes are and every browser is. Every pointer is checked against the
  * segment before anything is read through it, and every number that indexes before it is used.
@@ -67,6 +67,7 @@ function need(condition, sentence) {
  * @property {Float32Array} poses x, y, cos, sin of each
  * @property {Uint8Array} flags bit 0 asleep, bits 1-2 type (0 static, 1 kinematic, 2 dynamic), bit 3 a player's
  * @property {Contacts} contacts
+ * @property {Float32Array} joints x, y, x, y: the ends of each, in the world
  * @property {Shapes | null} shapes only when the definitions changed
  */
 
@@ -191,7 +192,9 @@ export function readFrame(buffer) {
   const poses = segment.list(root, 0, fourBytes, 'poses');
   const flags = segment.list(root, 1, oneByte, 'flags');
   const contacts = segment.list(root, 2, composite, 'contacts');
+  const joints = segment.list(root, 6, fourBytes, 'joints');
   need(poses.count === 4 * flags.count, 'flags: not one for each pose');
+  need(joints.count % 4 === 0, 'joints: not four numbers each');
   return {
     tick: segment.data.getUint32(at, true) + 2 ** 32 * segment.data.getUint32(at + 4, true),
     root: hex64(segment.data, at + 8),
@@ -206,6 +209,7 @@ export function readFrame(buffer) {
       floats: new Float32Array(buffer, contacts.byte, 2 * contacts.words * contacts.count),
       bytes: new Uint8Array(buffer, contacts.byte, 8 * contacts.words * contacts.count),
     },
+    joints: segment.floats(joints),
     shapes: readShapes(segment, root, flags.count),
   };
 }

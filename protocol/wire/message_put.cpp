@@ -86,7 +86,7 @@ std::size_t contentWords(const Bye& message) {
 std::size_t contentWords(const View& message) {
     return 2 * message.poses.size() + byteWords(message.flags.size()) +
            structListWords<schema::View::Contact>(message.contacts.size()) +
-           byteWords(4 * message.bodies.size()) +
+           byteWords(4 * message.bodies.size()) + 2 * message.joints.size() +
            structListWords<schema::View::Shape>(message.shapes.size()) +
            byteWords(4 * vertexFloats(message));
 }
@@ -212,6 +212,16 @@ void put(schema::View::Builder to, const View& message) {
         }
     }
     putDefinitions(to, message);
+    if (!message.joints.empty()) {
+        auto joints = to.initJoints(static_cast<unsigned>(4 * message.joints.size()));
+        unsigned at = 0;
+        for (const View::Joint& joint : message.joints) {
+            joints.set(at++, joint.a.x);
+            joints.set(at++, joint.a.y);
+            joints.set(at++, joint.b.x);
+            joints.set(at++, joint.b.y);
+        }
+    }
 }
 
 }  // namespace huestep::protocol::wire

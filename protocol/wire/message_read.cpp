@@ -81,6 +81,19 @@ std::vector<View::Contact> readContacts(Reading& in,
     return contacts;
 }
 
+std::vector<View::Joint> readJoints(Reading& in, ::capnp::List<float>::Reader from) {
+    const std::size_t size = in.sizeOf("joints", from, 4 * maxViewJoints, 4);
+    if (size % 4 != 0) in.refuse("joints", "not four numbers a joint");
+    std::vector<View::Joint> joints(size / 4);
+    for (unsigned i = 0; i < joints.size(); ++i) {
+        joints[i] = in.at("joints", i, [&] {
+            return View::Joint{{in.real("a.x", from[4 * i]), in.real("a.y", from[4 * i + 1])},
+                               {in.real("b.x", from[4 * i + 2]), in.real("b.y", from[4 * i + 3])}};
+        });
+    }
+    return joints;
+}
+
 /// Shapes own consecutive runs of one list of vertices, which they must use up exactly.
 std::vector<View::Shape> readShapes(Reading& in, schema::View::Reader from, std::size_t bodies) {
     const auto list = from.getShapes();
@@ -258,6 +271,7 @@ View read(Reading& in, schema::View::Reader from) {
     }
     message.bodies = numbers<BodyId>(bodies);
     message.shapes = readShapes(in, from, message.poses.size());
+    message.joints = readJoints(in, from.getJoints());
     return message;
 }
 

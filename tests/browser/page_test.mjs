@@ -36,6 +36,7 @@ test('the page shows a session that is played, tick by tick, with the hashes of 
     assert.equal(await page.textContent('#state'), 'live');
     assert.match(await page.textContent('#root'), /^[0-9a-f]{16}$/);
     assert.ok(first.looks.player >= 4, 'players are marked');
+    assert.ok(first.joints >= 14, 'the rope, the swing, the see-saw and the paddle have their joints');
     await until(page, (h) => h.tick >= first.tick + 60);
 
     const drawn = await pixels(page, ['canvas', 'awake-fill', 'player-fill', 'static-fill']);

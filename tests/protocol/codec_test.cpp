@@ -454,6 +454,9 @@ TEST(CodecLimits, Views) {
     view.contacts.resize(maxViewContacts + 1);
     EXPECT_EQ(answerTo(view), "View.contacts: 262145 entries, at most 262144");
     view = {};
+    view.joints.resize(maxViewJoints + 1);
+    EXPECT_EQ(answerTo(view), "View.joints: 524292 entries, at most 524288");
+    view = {};
     view.poses.resize(maxViewBodies + 1);
     view.flags.resize(maxViewBodies + 1);
     EXPECT_EQ(answerTo(view), "View.poses: 524292 entries, at most 524288");
@@ -465,6 +468,7 @@ TEST(CodecLimits, TheLargestViewFits) {
     view.flags.resize(maxViewBodies);
     view.bodies.resize(maxViewBodies);
     view.contacts.resize(maxViewContacts);
+    view.joints.resize(maxViewJoints);
     view.shapes.assign(maxViewShapes, {0, ShapeKind::Polygon, 1.0f, std::vector<Vec2>(8)});
     EXPECT_EQ(answerTo(view), "accepted");
 }

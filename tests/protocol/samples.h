@@ -167,6 +167,9 @@ inline View randomView(Draw& draw) {
     for (std::size_t i = draw.below(10); i > 0; --i) {
         view.contacts.push_back({draw.point(), static_cast<std::uint8_t>(draw.below(256))});
     }
+    for (std::size_t i = draw.below(6); i > 0; --i) {
+        view.joints.push_back({draw.point(), draw.point()});
+    }
     if (bodies == 0 || draw.coin()) return view;
     for (std::size_t i = 0; i < bodies; ++i) view.bodies.push_back(draw.word());
     for (std::size_t i = draw.below(20); i > 0; --i) {
@@ -330,7 +333,8 @@ inline std::vector<Message> sampleMessages() {
                     {3, 4},
                     {{{1.0f, 2.0f}, {1.0f, 0.0f}}, {{-1.0f, 0.5f}, {0.0f, 1.0f}}},
                     {5, 0},
-                    {{{0.25f, 0.75f}, 3}, {{0.5f, 0.75f}, 255}}};
+                    {{{0.25f, 0.75f}, 3}, {{0.5f, 0.75f}, 255}},
+                    {}};
     return {hello,
             welcome,
             intent,
