@@ -7,6 +7,8 @@
 
 const firstWaitMs = 500;
 const longestWaitMs = 8000;
+/** The close code of a server that stops. */
+const goingAway = 1001;
 
 /**
  * @typedef {'connecting' | 'live' | 'waiting'} FeedState
@@ -42,13 +44,16 @@ export class Feed {
     const socket = new WebSocket(`${scheme}//${location.host}/view?${query}`, 'huestep-view');
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
+    let opened = false;
     socket.onopen = () => {
+      opened = true;
       this.waitMs = firstWaitMs;
       this.onState('live', 'live');
     };
     socket.onmessage = (event) => this.onFrame(event.data);
-    socket.onclose = () => {
-      if (this.socket === socket) this.lost();
+    socket.onclose = (event) => {
+      if (this.socket !== socket) return;
+      this.lost(event.code === goingAway ? 'the server stopped' : 'connection lost', opened);
     };
   }
 
@@ -57,12 +62,12 @@ export class Feed {
     this.socket?.close(4000, 'bad frame');
   }
 
-  async lost() {
+  /** @param {string} reason @param {boolean} opened false: it never came about */
+  async lost(reason, opened) {
     this.socket = null;
     this.losses += 1;
     const until = performance.now() + this.waitMs * (1 - Math.random() / 4);
     this.waitMs = Math.min(2 * this.waitMs, longestWaitMs);
-    let reason = 'connection lost';
     const tell = () => {
       const left = Math.ceil((until - performance.now()) / 1000);
       if (left > 0) this.onState('waiting', `${reason}, again in ${left} s`);
@@ -70,7 +75,7 @@ export class Feed {
     };
     this.timer = window.setInterval(tell, 250);
     tell();
-    reason = (await this.whyRefused()) ?? reason;
+    if (!opened) reason = await this.whyRefused();
   }
 
   /** A WebSocket does not say why it was refused; the page's own address does. */

@@ -20,7 +20,7 @@ export class Legend {
     this.lists = [moving, fixed, moving];
     this.lookCounts = looks.map((look) => this.entry(bodies, `body ${look}`, words[look], look));
     this.joints = this.entry(bodies, 'joint', 'joints', 'joint');
-    /** Entries come when their colour is first seen, and stay. @type {Map<string, {item: HTMLElement, count: HTMLElement}>} */
+    /** Made when their colour is first seen; like all entries they stay. @type {Map<string, {item: HTMLElement, count: HTMLElement}>} */
     this.colours = new Map();
   }
 
@@ -29,6 +29,7 @@ export class Legend {
     const item = document.createElement('li');
     item.title = title;
     const count = span('count', '');
+    item.hidden = true;  // until there is one
     item.append(span(`swatch ${swatch}`, ''), span('name', name), count);
     list.append(item);
     return { item, count };
@@ -43,6 +44,7 @@ export class Legend {
     const what = ['between moving bodies', 'with a fixed or driven body', 'without a colour'][kind];
     const swatch = kind === 2 ? 'dot overflow' : `${kind === 1 ? 'ring' : 'dot'} c${place}`;
     const made = this.entry(this.lists[kind], swatch, name, `contacts ${what}, graph colour ${name}`);
+    made.item.hidden = false;
     this.colours.set(key, made);
     for (const each of [...this.colours.keys()].sort(compareKeys)) {
       const { item } = /** @type {{item: HTMLElement}} */ (this.colours.get(each));
@@ -53,9 +55,11 @@ export class Legend {
 
   /** @param {number[]} lookCounts bodies of each look @param {import('./view.js').View} view */
   show(lookCounts, { contacts, joints }) {
+    if (joints.length > 0) this.joints.item.hidden = false;
     this.joints.count.textContent = String(joints.length / 4);
     this.joints.item.classList.toggle('none', joints.length === 0);
     this.lookCounts.forEach(({ item, count }, look) => {
+      if (lookCounts[look] > 0) item.hidden = false;
       count.textContent = String(lookCounts[look]);
       item.classList.toggle('none', lookCounts[look] === 0);
     });

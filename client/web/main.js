@@ -228,7 +228,9 @@ window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () 
   painter.restyle();
   redraw();
 });
-new ResizeObserver(resize).observe(surface);
+const sizes = new ResizeObserver(resize);
+sizes.observe(surface);
+sizes.observe(byId('foot'));
 painter.resize();
 // Starts by itself, and tells its state before it is here.
 feed = new Feed(session, take, showState);

@@ -104,12 +104,12 @@ export function trace(canvas, outline, poses, round) {
 export function boundsOf(outlines, view) {
   const isStatic = (/** @type {Outline} */ o) => ((view.flags[o.body] >> 1) & 3) === 0;
   const moving = outlines.filter((o) => !isStatic(o));
-  const box = boxOf(moving.length > 0 ? moving : outlines, view.poses, 0.005);
+  const box = boxOf(moving.length > 0 ? moving : outlines, view.poses);
   if (!box) return { left: -10, right: 10, bottom: -1, top: 10 };
   const reach = 0.35 * Math.max(box.right - box.left, box.top - box.bottom) + 2;
   const near = { left: box.left - reach, right: box.right + reach,
                  bottom: box.bottom - reach, top: box.top + reach };
-  const fixed = boxOf(outlines.filter(isStatic), view.poses, 0);
+  const fixed = boxOf(outlines.filter(isStatic), view.poses);
   if (!fixed) return box;
   return {
     left: Math.min(box.left, Math.max(fixed.left, near.left)),
@@ -120,11 +120,11 @@ export function boundsOf(outlines, view) {
 }
 
 /**
- * Leaves out a share of the outermost corners on each side: one body flung far away must not shrink
- * the rest to a dot.
- * @param {Outline[]} outlines @param {Float32Array} poses @param {number} share
+ * One body flung far away must not shrink the rest to a dot: what is farther from the middle 98 %
+ * than these are wide is left out.
+ * @param {Outline[]} outlines @param {Float32Array} poses
  */
-function boxOf(outlines, poses, share) {
+function boxOf(outlines, poses) {
   const xs = [];
   const ys = [];
   for (const o of outlines) {
@@ -140,7 +140,9 @@ function boxOf(outlines, poses, share) {
   if (xs.length === 0) return null;
   xs.sort((a, b) => a - b);
   ys.sort((a, b) => a - b);
-  const skip = Math.floor(share * xs.length);
-  return { left: xs[skip], right: xs[xs.length - 1 - skip],
-           bottom: ys[skip], top: ys[ys.length - 1 - skip] };
+  const last = xs.length - 1;
+  const skip = Math.floor(0.01 * xs.length);
+  const size = Math.max(xs[last - skip] - xs[skip], ys[last - skip] - ys[skip]);
+  return { left: Math.max(xs[0], xs[skip] - size), right: Math.min(xs[last], xs[last - skip] + size),
+           bottom: Math.max(ys[0], ys[skip] - size), top: Math.min(ys[last], ys[last - skip] + size) };
 }
