@@ -166,11 +166,13 @@ void Replica::noteOwnCommands(const protocol::Frame& frame, Instant now) {
     if (m_statistics.player == 0) return;
     for (const Command& command : frame.commands) {
         if (command.author != m_statistics.player) continue;
+        notePassedOver(command.sequence, frame.tick);
         const auto pending =
             std::find_if(m_pending.begin(), m_pending.end(),
                          [&](const Pending& p) { return p.command.sequence == command.sequence; });
         if (pending == m_pending.end() || pending->seenAt) continue;
         pending->seenAt = frame.tick;
+        if (std::exchange(pending->counted, true)) continue;
         ++m_statistics.commandsSeen;
         const double seconds = static_cast<double>(now - pending->asked) * 1e-9;
         if (m_latencies.size() < keptLatencies) {
@@ -183,6 +185,31 @@ void Replica::noteOwnCommands(const protocol::Frame& frame, Instant now) {
         if (outcome.author == m_statistics.player && outcome.reason != Rejection::None) {
             ++m_statistics.commandsRejected;
         }
+    }
+}
+
+void Replica::notePassedOver(std::uint64_t sequence, std::uint64_t tick) {
+    // Sequences rise, so what the server let go of can never count any more.
+    for (Pending& pending : m_pending) {
+        if (pending.command.sequence >= sequence) return;
+        if (pending.seenAt) continue;
+        pending.seenAt = tick;
+        if (!std::exchange(pending.counted, true)) ++m_statistics.commandsLost;
+    }
+}
+
+void Replica::noteSnapshot() {
+    // Frames before a snapshot may never have come here; its record of this player tells which
+    // commands they had. Frames after it come again, with the commands they had.
+    std::uint64_t ordered = 0;
+    for (const PlayerRecord& player : m_world->players()) {
+        if (player.id == m_statistics.player && player.id != 0) ordered = player.lastSequence;
+    }
+    for (Pending& pending : m_pending) {
+        if (pending.seenAt && *pending.seenAt >= m_world->tick()) pending.seenAt.reset();
+        if (pending.seenAt || pending.command.sequence > ordered) continue;
+        pending.seenAt = m_world->tick() - 1;
+        if (!std::exchange(pending.counted, true)) ++m_statistics.commandsSeen;
     }
 }
 
@@ -270,6 +297,7 @@ void Replica::adopt(World world) {
     }
     m_world = std::move(world);
     m_lastCheckpoint = m_world->tick();
+    noteSnapshot();
     ++m_statistics.snapshots;
     m_state = State::Following;
 }

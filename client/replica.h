@@ -48,6 +48,7 @@ struct Statistics {
     std::uint64_t commandsSent = 0;
     std::uint64_t commandsResent = 0;
     std::uint64_t commandsSeen = 0;      ///< own commands found in frames
+    std::uint64_t commandsLost = 0;      ///< never ordered: a later one was, so they never will be
     std::uint64_t commandsRejected = 0;  ///< of them rejected by the world
     std::uint64_t bytesIn = 0;           ///< set by the connection
     std::uint64_t bytesOut = 0;
@@ -110,7 +111,8 @@ class Replica {
     struct Pending {
         Command command;
         Instant asked = 0;
-        std::optional<std::uint64_t> seenAt;  ///< tick of the frame that had it
+        std::optional<std::uint64_t> seenAt;  ///< tick of the frame that had it, or a later one
+        bool counted = false;                 ///< in the statistics
     };
     struct Incoming {
         protocol::SnapshotBegin begin;
@@ -134,6 +136,8 @@ class Replica {
     void reportDifference(const World& theirs);
     void adopt(World world);
     void noteOwnCommands(const protocol::Frame& frame, Instant now);
+    void notePassedOver(std::uint64_t sequence, std::uint64_t tick);
+    void noteSnapshot();
     void noteCommitted(std::uint64_t committed);
 
     ReplicaConfig m_config;

@@ -106,12 +106,11 @@ void Connection::on(const protocol::Hello& hello, Instant now) {
         return enter(*session, 0, now);
     }
     if (hello.resume) {
-        const Result<PlayerId> player = session->seats().resume(*hello.resume, now);
-        if (!player) {
-            return end(ByeReason::ResumeRefused, player.error().message, false, now);
-        }
-        m_context.takeOver(*session, *player, m_id, now);
-        return enter(*session, *player, now);
+        const Result<Seats::Resumed> seat = session->seats().resume(*hello.resume, now);
+        if (!seat) return end(ByeReason::ResumeRefused, seat.error().message, false, now);
+        m_mayHaveTail = seat->sameEpoch;
+        m_context.takeOver(*session, seat->player, m_id, now);
+        return enter(*session, seat->player, now);
     }
     const std::optional<JoinId> join = session->seats().join();
     if (!join) return end(ByeReason::SessionFull, "every seat is taken", false, now);
@@ -133,14 +132,14 @@ void Connection::enter(Session& session, PlayerId player, Instant now) {
     if (player != 0) welcome.resume = session.seats().issue(player);
     send(welcome);
     line("welcome").with("resumed", std::uint64_t{m_hello->resume.has_value()}).to(m_context.log);
-    startFeed(*m_hello, now);
+    startFeed(now);
 }
 
-void Connection::startFeed(const protocol::Hello& hello, Instant now) {
+void Connection::startFeed(Instant now) {
     m_behindSince = now;
     m_resynced = true;
-    const std::uint64_t have = hello.haveTick;
-    const bool here = have != 0 && m_session->rootAt(have) == hello.haveHash;
+    const std::uint64_t have = m_hello->haveTick;
+    const bool here = m_mayHaveTail && have != 0 && m_session->rootAt(have) == m_hello->haveHash;
     if (!here) return startSnapshot(m_session->snapshotForJoin(have), now);
     m_feed = Feed::Frames;
     m_cursor = have;

@@ -113,7 +113,7 @@ class Connection {
     void on(const protocol::Bye& bye, Instant now);
 
     void enter(Session& session, PlayerId player, Instant now);
-    void startFeed(const protocol::Hello& hello, Instant now);
+    void startFeed(Instant now);
     void startSnapshot(SharedSnapshot snapshot, Instant now);
     void checkCheckpoint(const protocol::Checkpoint& checkpoint);
     bool mayCost(Instant now);
@@ -135,6 +135,7 @@ class Connection {
     PlayerId m_player = 0;
     JoinId m_join = 0;
     std::optional<protocol::Hello> m_hello;
+    bool m_mayHaveTail = false;  ///< its world is surely one of this server's
 
     // Output.
     std::deque<SharedBytes> m_outbox;

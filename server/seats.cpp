@@ -54,7 +54,7 @@ void Seats::abandon(JoinId join) {
     m_joins.erase(found);
 }
 
-Result<PlayerId> Seats::resume(const protocol::ResumeToken& token, Instant now) {
+Result<Seats::Resumed> Seats::resume(const protocol::ResumeToken& token, Instant now) {
     const std::optional<ResumeClaim> claim = readToken(m_key, m_session, token);
     if (!claim) return Error{"this token is not of this session"};
     const auto seat = m_seats.find(claim->player);
@@ -70,7 +70,7 @@ Result<PlayerId> Seats::resume(const protocol::ResumeToken& token, Instant now) 
     seat->second.connected = true;
     seat->second.emptySince = now;
     seat->second.heardAt = m_tick;
-    return claim->player;
+    return Resumed{claim->player, thisEpoch};
 }
 
 protocol::ResumeToken Seats::issue(PlayerId player) {

@@ -42,7 +42,14 @@ class Seats {
     /// A seat for the holder of a token: the newest issued for it, the one before (its answer may
     /// have been lost), or one of an earlier epoch while at most one was issued in this one.
     /// The sentence says why not.
-    Result<PlayerId> resume(const protocol::ResumeToken& token, Instant now);
+    struct Resumed {
+        PlayerId player = 0;
+        /// The token is of this epoch, so what its holder stepped is what this server closed. A
+        /// holder from before a restart may have stepped frames that were lost with it, and its
+        /// motion root need not show that: a command that moved nothing yet is state too.
+        bool sameEpoch = false;
+    };
+    Result<Resumed> resume(const protocol::ResumeToken& token, Instant now);
     /// A fresh token of a taken seat.
     protocol::ResumeToken issue(PlayerId player);
     /// The connection of a seat ended: kept for a while, or given up `forGood`.

@@ -165,7 +165,7 @@ TEST(Replica, IfTheServerNoLongerHasTheTickTheBlockOfBodiesIsNamed) {
 TEST(Replica, OwnCommandsHaveRisingSequencesAndAreFoundInFrames) {
     Table table;
     table.enter();
-    EXPECT_TRUE(table.replica.act(ApplyImpulse{3, {1, 0}, {}}, table.now));
+    EXPECT_TRUE(table.replica.act(ApplyImpulse{3, {1, 0}, {0, 6}}, table.now));
     EXPECT_TRUE(table.replica.act(Release{}, table.now));
     const auto intent = Table::find<Intent>(table.take());
     ASSERT_TRUE(intent.has_value());
@@ -230,6 +230,35 @@ TEST(Replica, AfterAResumeWhatTheServerDoesNotHaveIsSentAgainAndNothingElse) {
     EXPECT_EQ(again->commands, (std::vector<Command>{intent->commands[2]}));
     EXPECT_TRUE(table.say(table.frame())) << "the tail goes on without a snapshot";
     EXPECT_EQ(table.replica.counts().resumes, 1u);
+}
+
+TEST(Replica, CommandsOfFramesThatASnapshotReplacedAreNotWaitedForForEver) {
+    Table table;
+    table.enter();
+    for (int i = 0; i < 3; ++i) table.replica.act(Release{}, table.now);
+    const auto intent = Table::find<Intent>(table.take());
+    table.frame({intent->commands[0], intent->commands[1]});  // never gets here
+    table.snapshot();
+    EXPECT_EQ(table.replica.counts().commandsSeen, 2u);
+    EXPECT_EQ(table.replica.pendingCommands(), 3u);
+    table.say(table.frame({}, table.world.tick()));
+    EXPECT_EQ(table.replica.pendingCommands(), 1u) << "the third is still on its way";
+    table.say(table.frame({intent->commands[2]}));
+    table.say(table.frame({}, table.world.tick()));
+    EXPECT_EQ(table.replica.pendingCommands(), 0u);
+    EXPECT_EQ(table.replica.counts().commandsSeen, 3u);
+}
+
+TEST(Replica, ACommandTheServerLetGoOfIsCountedAsLostOnceALaterOneIsOrdered) {
+    Table table;
+    table.enter();
+    for (int i = 0; i < 2; ++i) table.replica.act(Release{}, table.now);
+    const auto intent = Table::find<Intent>(table.take());
+    table.say(table.frame({intent->commands[1]}));
+    table.say(table.frame({}, table.world.tick()));
+    EXPECT_EQ(table.replica.pendingCommands(), 0u);
+    EXPECT_EQ(table.replica.counts().commandsLost, 1u);
+    EXPECT_EQ(table.replica.counts().commandsSeen, 1u);
 }
 
 TEST(Replica, AServerThatLostUncommittedTicksGetsThemAgainOnce) {

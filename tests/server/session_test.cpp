@@ -88,7 +88,8 @@ TEST(Session, FramesReplayedAnywhereGiveTheSameRoots) {
     World replica = *World::create(deskScene());
     replica.step(bench.session.frames().find(0)->commands);
     for (std::uint64_t s = 1; s < 100; ++s) {
-        bench.session.queue(player, {0, s, ApplyImpulse{3, {0.3f, 1.0f}, {2.0f, 2.0f}}});
+        const Vec2 at = bench.session.world().motions()[2].position;
+        bench.session.queue(player, {0, s, ApplyImpulse{3, {0.3f, 1.0f}, at}});
         const ClosedTick closed = bench.close();
         ASSERT_EQ(frameOf(closed).previousRoot, replica.motionRoot()) << s;
         replica.step(frameOf(closed).commands);
@@ -266,7 +267,10 @@ TEST(Seats, ATokenOutlivesTheServerButNotTheSeat) {
     const protocol::ResumeToken token = bench.session.seats().issue(player);
     SessionStart again{"play", 2, ResumeKey{5, 6, 7}, nullptr, {}, bench.session.world()};
     Session next(std::move(again), bench.limits, bench.now);
-    EXPECT_EQ(*next.seats().resume(token, bench.now), player);
+    const Result<Seats::Resumed> resumed = next.seats().resume(token, bench.now);
+    ASSERT_TRUE(resumed.ok());
+    EXPECT_EQ(resumed->player, player);
+    EXPECT_FALSE(resumed->sameEpoch);
     next.seats().vacate(player, true, bench.now);
     EXPECT_FALSE(next.seats().resume(token, bench.now).ok());
 
@@ -330,6 +334,33 @@ TEST(Hub, AResumedSeatGetsTheTailAloneIfTheServerStillHasIt) {
     wrong.say(hello);
     wrong.read();
     EXPECT_EQ(wrong.count<protocol::SnapshotBegin>(), 1u) << "its world is not ours";
+}
+
+TEST(Hub, AfterARestartAnEqualMotionRootIsNotEnoughForTheTail) {
+    // A command that moves nothing changes the world's state and not its motion root: a client that
+    // stepped one in a frame that the restart lost must not go on from there.
+    Desk before;
+    Peer first(before);
+    const protocol::Welcome welcome = first.join();
+    Limits limits;
+    SessionStart again{"play", 2, ResumeKey{5, 6, 7}, nullptr, {}, before.session->world()};
+    test::DeskJournal journal;
+    Hub hub({limits, test::deskPrint, nullptr, {}}, journal);
+    ASSERT_TRUE(hub.add(std::move(again), before.now).ok());
+    protocol::Hello hello = first.hello();
+    hello.resume = welcome.resume;
+    hello.haveTick = before.session->tick();
+    hello.haveHash = before.session->world().motionRoot();
+    const ConnectionId id = *hub.accept("test", before.now);
+    hub.receive(id, protocol::encode(hello), before.now);
+    protocol::FrameSplitter splitter;
+    std::vector<protocol::Message> heard;
+    while (const SharedBytes bytes = hub.next(id, 0, before.now)) {
+        ASSERT_TRUE(splitter.feed(*bytes, heard).ok());
+    }
+    ASSERT_GE(heard.size(), 2u);
+    EXPECT_EQ(std::get<protocol::Welcome>(heard[0]).player, welcome.player);
+    EXPECT_TRUE(std::holds_alternative<protocol::SnapshotBegin>(heard[1]));
 }
 
 TEST(Hub, ASecondConnectionTakesTheSeatOverFromTheFirst) {

@@ -230,6 +230,7 @@ class Simulation {
     static void checkInputs(std::size_t place, const client::Replica& replica,
                             const std::set<std::pair<PlayerId, std::uint64_t>>& counted) {
         const client::Statistics& counts = replica.counts();
+        if (replica.player() == 0) return;  // a spectator
         if (counts.resumes + 1 != counts.connections || replica.pendingCommands() != 0) return;
         const auto first = counted.lower_bound({replica.player(), 0});
         const auto last = counted.lower_bound({replica.player() + 1, 0});
