@@ -4,6 +4,8 @@
  * World: metres, y up. Canvas: CSS pixels, y down. `scale` is pixels a metre.
  */
 
+/** @typedef {{left: number, right: number, bottom: number, top: number}} Box */
+
 const closest = 400;
 const farthest = 0.05;
 const wheelStep = 1.0015;
@@ -30,7 +32,11 @@ export class Camera {
     return this.surface.clientHeight;
   }
 
-  /** Shows a rectangle of the world whole. @param {{left: number, bottom: number, right: number, top: number}} box @param {{left: number, right: number, top: number, bottom: number}} margin pixels */
+  /**
+   * Shows a rectangle of the world whole.
+   * @param {Box} box m
+   * @param {Box} margin pixels
+   */
   fit(box, margin) {
     const wide = Math.max(40, this.width - margin.left - margin.right);
     const high = Math.max(40, this.height - margin.top - margin.bottom);
@@ -49,7 +55,12 @@ export class Camera {
     this.moved();
   }
 
-  /** Keeps the world's point under a pixel where it is. @param {number} factor @param {number} px @param {number} py */
+  /**
+   * Keeps the world's point under a pixel where it is.
+   * @param {number} factor
+   * @param {number} px
+   * @param {number} py
+   */
   zoom(factor, px = this.width / 2, py = this.height / 2) {
     const scale = Math.min(closest, Math.max(farthest, this.scale * factor));
     const fromX = px - this.width / 2;
@@ -75,7 +86,8 @@ export class Camera {
     surface.addEventListener('pointermove', (event) => this.drag(event));
     for (const end of ['pointerup', 'pointercancel']) {
       surface.addEventListener(end, (event) =>
-        this.pointers.delete(/** @type {PointerEvent} */ (event).pointerId));
+        this.pointers.delete(/** @type {PointerEvent} */ (event).pointerId),
+      );
     }
   }
 
@@ -86,7 +98,10 @@ export class Camera {
     this.zoom(wheelStep ** (-event.deltaY * lines), event.offsetX, event.offsetY);
   }
 
-  /** One pointer pans; two pan by their middle and zoom by their distance. @param {PointerEvent} event */
+  /**
+   * One pointer pans; two pan by their middle and zoom by their distance.
+   * @param {PointerEvent} event
+   */
   drag(event) {
     const before = this.pointers.get(event.pointerId);
     if (!before) return;

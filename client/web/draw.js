@@ -28,7 +28,10 @@ export function lookOf(flags) {
   return type === 1 ? lookKinematic : lookAwake;
 }
 
-/** @param {number} colour of a View's contact @returns {{fixed: boolean, place: number}} place in the palette */
+/**
+ * @param {number} colour of a View's contact
+ * @returns {{fixed: boolean, place: number}} place in the palette
+ */
 export function swatchOf(colour) {
   const fixed = colour >= firstFixedColour;
   const number = fixed ? colour - firstFixedColour : colour;
@@ -41,7 +44,8 @@ export class Painter {
     this.element = element;
     this.camera = camera;
     this.canvas = /** @type {CanvasRenderingContext2D} */ (
-      element.getContext('2d', { alpha: false }));
+      element.getContext('2d', { alpha: false })
+    );
     /** @type {import('./outline.js').Outline[]} */
     this.outlines = [];
     /** Shapes of each look, made anew for each view. @type {number[][]} */
@@ -87,8 +91,14 @@ export class Painter {
     canvas.fillStyle = this.style.ground;
     canvas.fillRect(0, 0, this.element.width, this.element.height);
     const scale = camera.scale * pixels;
-    canvas.setTransform(scale, 0, 0, -scale, this.element.width / 2 - camera.x * scale,
-                        this.element.height / 2 + camera.y * scale);
+    canvas.setTransform(
+      scale,
+      0,
+      0,
+      -scale,
+      this.element.width / 2 - camera.x * scale,
+      this.element.height / 2 + camera.y * scale,
+    );
     this.drawGrid();
     if (!view) return;
     this.drawBodies(view);
@@ -109,11 +119,19 @@ export class Painter {
     const halfWidth = camera.width / 2 / camera.scale;
     const halfHeight = camera.height / 2 / camera.scale;
     canvas.beginPath();
-    for (let x = Math.ceil((camera.x - halfWidth) / step) * step; x < camera.x + halfWidth; x += step) {
+    for (
+      let x = Math.ceil((camera.x - halfWidth) / step) * step;
+      x < camera.x + halfWidth;
+      x += step
+    ) {
       canvas.moveTo(x, camera.y - halfHeight);
       canvas.lineTo(x, camera.y + halfHeight);
     }
-    for (let y = Math.ceil((camera.y - halfHeight) / step) * step; y < camera.y + halfHeight; y += step) {
+    for (
+      let y = Math.ceil((camera.y - halfHeight) / step) * step;
+      y < camera.y + halfHeight;
+      y += step
+    ) {
       canvas.moveTo(camera.x - halfWidth, y);
       canvas.lineTo(camera.x + halfWidth, y);
     }
@@ -179,7 +197,10 @@ export class Painter {
     }
   }
 
-  /** Discs between moving bodies, rings against what does not move, squares for the overflow. @param {import('./view.js').View} view */
+  /**
+   * Discs between moving bodies, rings against what does not move, squares for the overflow.
+   * @param {import('./view.js').View} view
+   */
   drawContacts(view) {
     /** @type {Map<number, number[]>} */
     const byColour = new Map();
@@ -200,7 +221,11 @@ export class Painter {
     return Math.min(3.2, Math.max(1.3, this.camera.scale / 9));
   }
 
-  /** @param {import('./view.js').Contacts} contacts @param {number[]} list @param {number} colour */
+  /**
+   * @param {import('./view.js').Contacts} contacts
+   * @param {number[]} list
+   * @param {number} colour
+   */
   drawDots(contacts, list, colour) {
     const { canvas, camera } = this;
     const swatch = swatchOf(colour);
@@ -229,8 +254,12 @@ export class Painter {
     const half = (1.3 * this.dotPixels()) / this.camera.scale;
     this.canvas.fillStyle = this.style.overflow;
     for (const i of list) {
-      this.canvas.fillRect(contacts.floats[contacts.stride * i] - half,
-                           contacts.floats[contacts.stride * i + 1] - half, 2 * half, 2 * half);
+      this.canvas.fillRect(
+        contacts.floats[contacts.stride * i] - half,
+        contacts.floats[contacts.stride * i + 1] - half,
+        2 * half,
+        2 * half,
+      );
     }
   }
 }

@@ -1,8 +1,8 @@
 /**
  * The WebSocket of one session: frames in, and a connection that comes back by itself.
  *
- * After a loss it waits 0.5 s, then twice as long each time up to 8 s, each wait shortened at random
- * by up to a quarter so that the viewers of a restarted server do not all come at one moment.
+ * After a loss it waits 0.5 s, then twice as long each time up to 8 s, each wait shortened at
+ * random by up to a quarter so that the viewers of a restarted server do not come at one moment.
  */
 
 const firstWaitMs = 500;

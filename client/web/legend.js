@@ -4,7 +4,13 @@ import { looks, overflowColour, paletteSize, swatchOf } from './draw.js';
 /** The legend's numbers are for reading, not for following: a few times a second is enough. */
 export const refreshMs = 250;
 
-const words = { static: 'fixed', asleep: 'asleep', kinematic: 'driven', awake: 'awake', player: "player's" };
+const words = {
+  static: 'fixed',
+  asleep: 'asleep',
+  kinematic: 'driven',
+  awake: 'awake',
+  player: "player's",
+};
 
 /** @param {string} className @param {string} text */
 function span(className, text) {
@@ -15,12 +21,19 @@ function span(className, text) {
 }
 
 export class Legend {
-  /** @param {HTMLElement} bodies @param {HTMLElement} moving contacts between moving bodies @param {HTMLElement} fixed and with others */
+  /**
+   * @param {HTMLElement} bodies
+   * @param {HTMLElement} moving contacts between moving bodies
+   * @param {HTMLElement} fixed and with others
+   */
   constructor(bodies, moving, fixed) {
     this.lists = [moving, fixed, moving];
     this.lookCounts = looks.map((look) => this.entry(bodies, `body ${look}`, words[look], look));
     this.joints = this.entry(bodies, 'joint', 'joints', 'joint');
-    /** Made when their colour is first seen; like all entries they stay. @type {Map<string, {item: HTMLElement, count: HTMLElement}>} */
+    /**
+     * Made when their colour is first seen; like all entries they stay.
+     * @type {Map<string, {item: HTMLElement, count: HTMLElement}>}
+     */
     this.colours = new Map();
   }
 
@@ -29,7 +42,7 @@ export class Legend {
     const item = document.createElement('li');
     item.title = title;
     const count = span('count', '');
-    item.hidden = true;  // until there is one
+    item.hidden = true; // until there is one
     item.append(span(`swatch ${swatch}`, ''), span('name', name), count);
     list.append(item);
     return { item, count };
@@ -43,7 +56,12 @@ export class Legend {
     const name = kind === 2 ? 'overflow' : `${place}${place === paletteSize - 1 ? '+' : ''}`;
     const what = ['between moving bodies', 'with a fixed or driven body', 'without a colour'][kind];
     const swatch = kind === 2 ? 'dot overflow' : `${kind === 1 ? 'ring' : 'dot'} c${place}`;
-    const made = this.entry(this.lists[kind], swatch, name, `contacts ${what}, graph colour ${name}`);
+    const made = this.entry(
+      this.lists[kind],
+      swatch,
+      name,
+      `contacts ${what}, graph colour ${name}`,
+    );
     made.item.hidden = false;
     this.colours.set(key, made);
     for (const each of [...this.colours.keys()].sort(compareKeys)) {

@@ -17,8 +17,13 @@ function byId(id) {
 const session = new URLSearchParams(location.search).get('session') ?? '';
 const surface = /** @type {HTMLCanvasElement} */ (byId('canvas'));
 const shown = {
-  tick: byId('tick'), root: byId('root'), players: byId('players'), bodies: byId('bodies'),
-  awake: byId('awake'), contacts: byId('contacts'), rate: byId('rate'),
+  tick: byId('tick'),
+  root: byId('root'),
+  players: byId('players'),
+  bodies: byId('bodies'),
+  awake: byId('awake'),
+  contacts: byId('contacts'),
+  rate: byId('rate'),
 };
 
 /** @type {Feed | null} */
@@ -26,8 +31,8 @@ let feed = null;
 /** @type {import('./view.js').View | null} */
 let newest = null;
 /**
- * Frames on their way to the screen, oldest first. Two of them, so that two that come in one turn of
- * the screen are shown in two, and an uneven network does not look like an uneven world.
+ * Frames on their way to the screen, oldest first. Two of them, so that two that come in one turn
+ * of the screen are shown in two, and an uneven network does not look like an uneven world.
  * @type {import('./view.js').View[]}
  */
 const waiting = [];
@@ -81,7 +86,12 @@ function fit() {
   if (!newest) return;
   const gap = Math.min(24, camera.width / 24);
   const foot = byId('foot').offsetHeight;
-  camera.fit(boundsOf(painter.outlines, newest), { left: gap, right: gap, top: gap, bottom: gap + foot });
+  camera.fit(boundsOf(painter.outlines, newest), {
+    left: gap,
+    right: gap,
+    top: gap,
+    bottom: gap + foot,
+  });
 }
 
 /** @param {ArrayBuffer} frame */
@@ -94,7 +104,8 @@ function take(frame) {
     huestep.badFrames += 1;
     return feed?.reject();
   }
-  if (view.tick > huestep.tick + 1 && huestep.received > 0) huestep.missed += view.tick - huestep.tick - 1;
+  if (view.tick > huestep.tick + 1 && huestep.received > 0)
+    huestep.missed += view.tick - huestep.tick - 1;
   huestep.received += 1;
   huestep.tick = view.tick;
   huestep.root = view.root;
@@ -109,7 +120,11 @@ function take(frame) {
   if (!paused) redraw();
 }
 
-/** The server sends shapes once: a frame that is not shown leaves them to the next. @param {import('./view.js').View} from @param {import('./view.js').View} to */
+/**
+ * The server sends shapes once: a frame that is not shown leaves them to the next.
+ * @param {import('./view.js').View} from
+ * @param {import('./view.js').View} to
+ */
 function inherit(from, to) {
   if (!to.shapes && from.definitions === to.definitions) to.shapes = from.shapes;
 }
@@ -143,9 +158,17 @@ function showNumbers(view) {
       else awake += 1;
     }
   }
-  Object.assign(huestep, { players: view.players, bodies: view.bodies, contacts: view.contacts.count,
-                           joints: view.joints.length / 4, asleep, definitions: view.definitions });
-  looks.forEach((look, i) => { huestep.looks[look] = counts[i]; });
+  Object.assign(huestep, {
+    players: view.players,
+    bodies: view.bodies,
+    contacts: view.contacts.count,
+    joints: view.joints.length / 4,
+    asleep,
+    definitions: view.definitions,
+  });
+  looks.forEach((look, i) => {
+    huestep.looks[look] = counts[i];
+  });
   shown.tick.textContent = String(view.tick);
   shown.root.textContent = view.root;
   shown.players.textContent = String(view.players);
@@ -201,7 +224,8 @@ window.setInterval(() => {
   const since = performance.now() - 1000;
   while (arrivals.length > 0 && arrivals[0] < since) arrivals.shift();
   shown.rate.textContent = String(arrivals.length);
-  if (huestep.state === 'live' && !paused) showState('live', arrivals.length > 0 ? 'live' : 'standing still');
+  if (huestep.state === 'live' && !paused)
+    showState('live', arrivals.length > 0 ? 'live' : 'standing still');
 }, 500);
 
 byId('session').textContent = session;
@@ -212,12 +236,19 @@ byId('closer').addEventListener('click', () => camera.zoom(1.4));
 byId('farther').addEventListener('click', () => camera.zoom(1 / 1.4));
 surface.addEventListener('dblclick', fit);
 window.addEventListener('keydown', (event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey || event.target instanceof HTMLButtonElement) return;
+  if (event.ctrlKey || event.metaKey || event.altKey || event.target instanceof HTMLButtonElement)
+    return;
   /** @type {Record<string, () => void>} */
   const keys = {
-    ' ': pause, f: fit, '+': () => camera.zoom(1.4), '=': () => camera.zoom(1.4), '-': () => camera.zoom(1 / 1.4),
-    ArrowLeft: () => camera.pan(60, 0), ArrowRight: () => camera.pan(-60, 0),
-    ArrowUp: () => camera.pan(0, 60), ArrowDown: () => camera.pan(0, -60),
+    ' ': pause,
+    f: fit,
+    '+': () => camera.zoom(1.4),
+    '=': () => camera.zoom(1.4),
+    '-': () => camera.zoom(1 / 1.4),
+    ArrowLeft: () => camera.pan(60, 0),
+    ArrowRight: () => camera.pan(-60, 0),
+    ArrowUp: () => camera.pan(0, 60),
+    ArrowDown: () => camera.pan(0, -60),
   };
   const action = keys[event.key];
   if (!action) return;

@@ -76,8 +76,10 @@ export function trace(canvas, outline, poses, round) {
     // A line from the middle shows how a disc turns.
     if (outline.corners === 1) {
       canvas.moveTo(px, py);
-      canvas.lineTo(px + c * (outline.x[0] + r) - s * outline.y[0],
-                    py + s * (outline.x[0] + r) + c * outline.y[0]);
+      canvas.lineTo(
+        px + c * (outline.x[0] + r) - s * outline.y[0],
+        py + s * (outline.x[0] + r) + c * outline.y[0],
+      );
     }
     return;
   }
@@ -107,8 +109,12 @@ export function boundsOf(outlines, view) {
   const box = boxOf(moving.length > 0 ? moving : outlines, view.poses);
   if (!box) return { left: -10, right: 10, bottom: -1, top: 10 };
   const reach = 0.35 * Math.max(box.right - box.left, box.top - box.bottom) + 2;
-  const near = { left: box.left - reach, right: box.right + reach,
-                 bottom: box.bottom - reach, top: box.top + reach };
+  const near = {
+    left: box.left - reach,
+    right: box.right + reach,
+    bottom: box.bottom - reach,
+    top: box.top + reach,
+  };
   const fixed = boxOf(outlines.filter(isStatic), view.poses);
   if (!fixed) return box;
   return {
@@ -143,6 +149,10 @@ function boxOf(outlines, poses) {
   const last = xs.length - 1;
   const skip = Math.floor(0.01 * xs.length);
   const size = Math.max(xs[last - skip] - xs[skip], ys[last - skip] - ys[skip]);
-  return { left: Math.max(xs[0], xs[skip] - size), right: Math.min(xs[last], xs[last - skip] + size),
-           bottom: Math.max(ys[0], ys[skip] - size), top: Math.min(ys[last], ys[last - skip] + size) };
+  return {
+    left: Math.max(xs[0], xs[skip] - size),
+    right: Math.min(xs[last], xs[last - skip] + size),
+    bottom: Math.max(ys[0], ys[skip] - size),
+    top: Math.min(ys[last], ys[last - skip] + size),
+  };
 }

@@ -65,7 +65,8 @@ function need(condition, sentence) {
  * @property {number} definitions
  * @property {number} bodies how many
  * @property {Float32Array} poses x, y, cos, sin of each
- * @property {Uint8Array} flags bit 0 asleep, bits 1-2 type (0 static, 1 kinematic, 2 dynamic), bit 3 a player's
+ * @property {Uint8Array} flags bit 0 asleep, bits 1-2 type (static, kinematic, dynamic),
+ *   bit 3 a player's
  * @property {Contacts} contacts
  * @property {Float32Array} joints x, y, x, y: the ends of each, in the world
  * @property {Shapes | null} shapes only when the definitions changed
@@ -138,7 +139,12 @@ function hex64(data, at) {
   return digits(data.getUint32(at + 4, true)) + digits(data.getUint32(at, true));
 }
 
-/** @param {Segment} segment @param {{at: number, dataWords: number, pointers: number}} root @param {number} bodies @returns {Shapes | null} */
+/**
+ * @param {Segment} segment
+ * @param {{at: number, dataWords: number, pointers: number}} root
+ * @param {number} bodies
+ * @returns {Shapes | null}
+ */
 function readShapes(segment, root, bodies) {
   const list = segment.list(root, 4, composite, 'shapes');
   const ids = segment.list(root, 3, fourBytes, 'bodies');

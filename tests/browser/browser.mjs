@@ -4,14 +4,23 @@ import { join } from 'node:path';
 import { eventually } from './server.mjs';
 
 // The packages are installed in the build folder, so they are asked for from there.
-const { chromium } = createRequire(join(process.env.HUESTEP_NODE_MODULES ?? '.', 'x.js'))('playwright-core');
+const { chromium } = createRequire(join(process.env.HUESTEP_NODE_MODULES ?? '.', 'x.js'))(
+  'playwright-core',
+);
 
 export function launch() {
   return chromium.launch({
     executablePath: process.env.HUESTEP_CHROMIUM ?? '/usr/bin/chromium',
     headless: true,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-component-update',
-           '--disable-background-networking', '--disable-sync'],
+    args: [
+      '--no-sandbox',
+      '--disable-gpu',
+      '--disable-quic',
+      '--no-first-run',
+      '--disable-component-update',
+      '--disable-background-networking',
+      '--disable-sync',
+    ],
   });
 }
 
@@ -21,9 +30,17 @@ export const phone = { width: 390, height: 844 };
 /**
  * @returns a page with `problems`: errors in the console, uncaught exceptions, failed requests
  */
-export async function openPage(browser, url, { size = desktop, scheme = 'light', touch = false } = {}) {
+export async function openPage(
+  browser,
+  url,
+  { size = desktop, scheme = 'light', touch = false } = {},
+) {
   const context = await browser.newContext({
-    viewport: size, colorScheme: scheme, hasTouch: touch, isMobile: touch, deviceScaleFactor: touch ? 2 : 1,
+    viewport: size,
+    colorScheme: scheme,
+    hasTouch: touch,
+    isMobile: touch,
+    deviceScaleFactor: touch ? 2 : 1,
   });
   const page = await context.newPage();
   page.problems = [];
@@ -36,12 +53,15 @@ export async function openPage(browser, url, { size = desktop, scheme = 'light',
 
 export const state = (page) => page.evaluate(() => ({ ...window.huestep }));
 
-/** Waits until the page's state is as wanted. The page's own policy forbids to hand it code as text. */
+/** Waits until the page's state is as wanted. Its own policy forbids to hand it code as text. */
 export const until = (page, wanted, seconds = 60) =>
-  eventually(`${wanted} of ${page.url()}; problems: ${page.problems}`,
-             async () => wanted(await state(page)), seconds);
+  eventually(
+    `${wanted} of ${page.url()}; problems: ${page.problems}`,
+    async () => wanted(await state(page)),
+    seconds,
+  );
 
-/** How many of the canvas's pixels have each of some colours of the style sheet, and how many colours there are. */
+/** Pixels of the canvas in each of some colours of the style sheet, and how many colours it has. */
 export function pixels(page, names) {
   return page.evaluate((wanted) => {
     const canvas = document.getElementById('canvas');
@@ -52,7 +72,8 @@ export function pixels(page, names) {
       counts.set(colour, (counts.get(colour) ?? 0) + 1);
     }
     const style = getComputedStyle(document.documentElement);
-    const of = (name) => counts.get(parseInt(style.getPropertyValue(`--${name}`).trim().slice(1), 16)) ?? 0;
+    const of = (name) =>
+      counts.get(parseInt(style.getPropertyValue(`--${name}`).trim().slice(1), 16)) ?? 0;
     return { colours: counts.size, ...Object.fromEntries(wanted.map((name) => [name, of(name)])) };
   }, names);
 }

@@ -25,8 +25,13 @@ function get(path, { method = 'GET', headers = {} } = {}) {
     const asked = request({ host, port, path, method, headers, agent: false }, (reply) => {
       const parts = [];
       reply.on('data', (part) => parts.push(part));
-      reply.on('end', () => done({ status: reply.statusCode, headers: reply.headers,
-                                   body: Buffer.concat(parts).toString() }));
+      reply.on('end', () =>
+        done({
+          status: reply.statusCode,
+          headers: reply.headers,
+          body: Buffer.concat(parts).toString(),
+        }),
+      );
     });
     asked.on('error', fail);
     asked.end();
@@ -36,14 +41,27 @@ function get(path, { method = 'GET', headers = {} } = {}) {
 /** The status of an attempt to watch, and the socket if it is a WebSocket now. */
 function watch(path, headers = {}) {
   return new Promise((done, fail) => {
-    const asked = request({ host, port, path, agent: false, headers: {
-      Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13',
-      'Sec-WebSocket-Key': randomBytes(16).toString('base64'), ...headers } });
+    const asked = request({
+      host,
+      port,
+      path,
+      agent: false,
+      headers: {
+        Connection: 'Upgrade',
+        Upgrade: 'websocket',
+        'Sec-WebSocket-Version': '13',
+        'Sec-WebSocket-Key': randomBytes(16).toString('base64'),
+        ...headers,
+      },
+    });
     asked.on('upgrade', (reply, socket) => {
       socket.on('error', () => {});
       done({ status: reply.statusCode, socket });
     });
-    asked.on('response', (reply) => { reply.resume(); done({ status: reply.statusCode }); });
+    asked.on('response', (reply) => {
+      reply.resume();
+      done({ status: reply.statusCode });
+    });
     asked.on('error', fail);
     asked.end();
   });
@@ -52,14 +70,32 @@ function watch(path, headers = {}) {
 /** A masked frame of a WebSocket's client. */
 function masked(opcode, bytes) {
   const mask = randomBytes(4);
-  const length = bytes.length < 126 ? [0x80 | bytes.length] : [0x80 | 126, bytes.length >> 8, bytes.length & 255];
-  return Buffer.concat([Buffer.from([0x80 | opcode, ...length]), mask, bytes.map((b, i) => b ^ mask[i & 3])]);
+  const length =
+    bytes.length < 126
+      ? [0x80 | bytes.length]
+      : [0x80 | 126, bytes.length >> 8, bytes.length & 255];
+  return Buffer.concat([
+    Buffer.from([0x80 | opcode, ...length]),
+    mask,
+    bytes.map((b, i) => b ^ mask[i & 3]),
+  ]);
 }
 
 test('bad addresses give 404, and no path leads to a file', async () => {
-  for (const path of ['/nothing', '/main.js/', '/../../etc/passwd', '/%2e%2e/%2e%2e/etc/passwd', '//etc/passwd',
-                      '/index.html', '/message.html', '/?session=none', '/?session=',
-                      `/?session=${'a'.repeat(1000)}`, '/?session=../play', '/?session=%3Cscript%3E']) {
+  for (const path of [
+    '/nothing',
+    '/main.js/',
+    '/../../etc/passwd',
+    '/%2e%2e/%2e%2e/etc/passwd',
+    '//etc/passwd',
+    '/index.html',
+    '/message.html',
+    '/?session=none',
+    '/?session=',
+    `/?session=${'a'.repeat(1000)}`,
+    '/?session=../play',
+    '/?session=%3Cscript%3E',
+  ]) {
     const reply = await get(path);
     assert.ok([400, 403, 404].includes(reply.status), `${path}: ${reply.status}`);
     assert.doesNotMatch(reply.body, /root:|<script/, path);
@@ -70,7 +106,14 @@ test('bad addresses give 404, and no path leads to a file', async () => {
 });
 
 test('every reply carries the headers that keep a browser from running anything else', async () => {
-  for (const path of ['/', '/?session=play', '/main.js', '/style.css', '/favicon.svg', '/nothing']) {
+  for (const path of [
+    '/',
+    '/?session=play',
+    '/main.js',
+    '/style.css',
+    '/favicon.svg',
+    '/nothing',
+  ]) {
     const { headers } = await get(path);
     assert.match(headers['content-security-policy'], /default-src 'none'; script-src 'self'/, path);
     assert.doesNotMatch(headers['content-security-policy'], /unsafe|\*/, path);
@@ -93,7 +136,10 @@ test('a session is watched from the page of its own server only', async () => {
   assert.equal((await watch('/view?session=none')).status, 404);
   assert.equal((await watch('/view')).status, 404);
   assert.equal((await watch('/elsewhere?session=play')).status, 404);
-  assert.equal((await watch('/view?session=play', { Origin: 'http://elsewhere.example' })).status, 403);
+  assert.equal(
+    (await watch('/view?session=play', { Origin: 'http://elsewhere.example' })).status,
+    403,
+  );
   assert.equal((await get('/view?session=play')).status, 426);
   const own = await watch('/view?session=play', { Origin: `http://${host}:${port}` });
   assert.equal(own.status, 101);
@@ -103,7 +149,10 @@ test('a session is watched from the page of its own server only', async () => {
 test('a viewer that sends anything is let go', async () => {
   const small = await watch('/view?session=play');
   const large = await watch('/view?session=play');
-  for (const [viewer, bytes] of [[small, Buffer.from('hello')], [large, randomBytes(60_000)]]) {
+  for (const [viewer, bytes] of [
+    [small, Buffer.from('hello')],
+    [large, randomBytes(60_000)],
+  ]) {
     const ended = new Promise((done) => viewer.socket.on('close', done));
     viewer.socket.resume();
     viewer.socket.write(masked(2, bytes));
@@ -123,21 +172,33 @@ test('the number of viewers has a cap, and places become free again', async () =
   assert.equal(sockets.length, 64);
   assert.equal(refused, 6);
   for (const socket of sockets) socket.destroy();
-  const again = await eventually('a free place', async () => (await watch('/view?session=pile')).socket);
+  const again = await eventually(
+    'a free place',
+    async () => (await watch('/view?session=pile')).socket,
+  );
   again.destroy();
 });
 
 test('bytes that are no HTTP, and heads that never end, leave the server as it was', async () => {
-  const say = (bytes) => new Promise((done) => {
-    const socket = connect({ host, port: Number(port) }, () => socket.write(bytes));
-    socket.on('error', () => {});
-    socket.on('close', done);
-    socket.resume();
-    setTimeout(() => socket.destroy(), 300);
-  });
-  await Promise.all([say(randomBytes(2000)), say('GET '), say(`GET /${'a'.repeat(20_000)} HTTP/1.1\r\n\r\n`),
-                     say(`GET / HTTP/1.1\r\n${'X-Header: y\r\n'.repeat(2000)}\r\n`), say('PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n'),
-                     say('GET / HTTP/1.1\r\nConnection: Upgrade, HTTP2-Settings\r\nUpgrade: h2c\r\nHTTP2-Settings: AAMAAABk\r\n\r\n')]);
+  const say = (bytes) =>
+    new Promise((done) => {
+      const socket = connect({ host, port: Number(port) }, () => socket.write(bytes));
+      socket.on('error', () => {});
+      socket.on('close', done);
+      socket.resume();
+      setTimeout(() => socket.destroy(), 300);
+    });
+  await Promise.all([
+    say(randomBytes(2000)),
+    say('GET '),
+    say(`GET /${'a'.repeat(20_000)} HTTP/1.1\r\n\r\n`),
+    say(`GET / HTTP/1.1\r\n${'X-Header: y\r\n'.repeat(2000)}\r\n`),
+    say('PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n'),
+    say(
+      'GET / HTTP/1.1\r\nConnection: Upgrade, HTTP2-Settings\r\n' +
+        'Upgrade: h2c\r\nHTTP2-Settings: AAMAAABk\r\n\r\n',
+    ),
+  ]);
   assert.equal((await get('/main.js')).status, 200);
 });
 

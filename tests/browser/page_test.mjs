@@ -36,7 +36,10 @@ test('the page shows a session that is played, tick by tick, with the hashes of 
     assert.equal(await page.textContent('#state'), 'live');
     assert.match(await page.textContent('#root'), /^[0-9a-f]{16}$/);
     assert.ok(first.looks.player >= 4, 'players are marked');
-    assert.ok(first.joints >= 14, 'the rope, the swing, the see-saw and the paddle have their joints');
+    assert.ok(
+      first.joints >= 14,
+      'the rope, the swing, the see-saw and the paddle have their joints',
+    );
     await until(page, (h) => h.tick >= first.tick + 60);
 
     const drawn = await pixels(page, ['canvas', 'awake-fill', 'player-fill', 'static-fill']);
@@ -74,10 +77,18 @@ test('a session without players shows the hashes of the same scene run without a
     const page = await openPage(browser, server.url);
     await until(page, (h) => h.tick >= 200);
     const { history } = await state(page);
-    const run = ask('run', 'pyramid:base=6', '--ticks', String(history.at(-1).tick), '--hash-every', '1');
+    const run = ask(
+      'run',
+      'pyramid:base=6',
+      '--ticks',
+      String(history.at(-1).tick),
+      '--hash-every',
+      '1',
+    );
     const roots = new Map(run.hashes.map((each) => [each.tick, each.motion]));
     assert.ok(history.length >= 20);
-    for (const { tick, root } of history) if (tick > 0) assert.equal(root, roots.get(tick), `tick ${tick}`);
+    for (const { tick, root } of history)
+      if (tick > 0) assert.equal(root, roots.get(tick), `tick ${tick}`);
   }));
 
 test('sleeping bodies are dimmed', () =>
@@ -91,7 +102,7 @@ test('sleeping bodies are dimmed', () =>
     assert.equal(early['awake-fill'] > 0, looks.awake > 0);
     assert.equal(early['asleep-fill'] > 0, looks.asleep > 0);
     await page.click('#pause');
-    await until(page, (h) => h.asleep === 12);  // the disc rolls on
+    await until(page, (h) => h.asleep === 12); // the disc rolls on
     await page.click('#pause');
     const late = await pixels(page, ['awake-fill', 'asleep-fill']);
     assert.ok(late['asleep-fill'] > 1000, `${late['asleep-fill']} pixels asleep`);
@@ -105,7 +116,10 @@ test('frames of a scene of 1,000 bodies are drawn as they come', () =>
     await until(page, (h) => h.received >= 60);
     await page.evaluate(() => {
       window.turns = 0;
-      const turn = () => { window.turns += 1; requestAnimationFrame(turn); };
+      const turn = () => {
+        window.turns += 1;
+        requestAnimationFrame(turn);
+      };
       requestAnimationFrame(turn);
     });
     const before = await state(page);
@@ -116,11 +130,24 @@ test('frames of a scene of 1,000 bodies are drawn as they come', () =>
     const received = now.received - before.received;
     const drawn = now.drawn - before.drawn;
     const sorted = now.drawMs.toSorted?.() ?? [...now.drawMs].sort((a, b) => a - b);
-    console.log(`${received} frames came, ${drawn} were drawn in ${turns} turns of the screen; median ${sorted[sorted.length >> 1]} ms each`);
-    assert.ok(Math.abs(received - drawn - (now.overtaken - before.overtaken)) <= 2, 'each frame is accounted for');
+    console.log(
+      `${received} frames came, ${drawn} were drawn in ${turns} turns of the screen; ` +
+        `median ${sorted[sorted.length >> 1].toFixed(1)} ms each`,
+    );
+    assert.ok(
+      Math.abs(received - drawn - (now.overtaken - before.overtaken)) <= 2,
+      'each frame is accounted for',
+    );
     // On a busy machine the screen has fewer turns than the session has ticks; none may be wasted.
-    assert.ok(drawn >= 0.75 * Math.min(received, turns), `${drawn} of ${received} frames were drawn in ${turns} turns`);
-    assert.equal(received + now.missed - before.missed, now.tick - before.tick, 'each tick is accounted for');
+    assert.ok(
+      drawn >= 0.75 * Math.min(received, turns),
+      `${drawn} of ${received} frames were drawn in ${turns} turns`,
+    );
+    assert.equal(
+      received + now.missed - before.missed,
+      now.tick - before.tick,
+      'each tick is accounted for',
+    );
     await page.screenshot({ path: join(pictures, 'thousand.png') });
   }));
 
@@ -144,9 +171,15 @@ test('pan, zoom, fit and pause do what they say', () =>
       await page.mouse.up();
       await page.mouse.move(600, 400);
     }
-    await eventually('nothing but the ground', async () => (await pixels(page, ['static-fill']))['static-fill'] === 0);
+    await eventually(
+      'nothing but the ground',
+      async () => (await pixels(page, ['static-fill']))['static-fill'] === 0,
+    );
     await page.click('#fit');
-    await eventually('the scene again', async () => (await pixels(page, ['static-fill']))['static-fill'] > 100);
+    await eventually(
+      'the scene again',
+      async () => (await pixels(page, ['static-fill']))['static-fill'] > 100,
+    );
 
     await page.click('#canvas');
     await page.keyboard.press(' ');
@@ -170,8 +203,10 @@ test('the page comes back when its server does', async () => {
     assert.match(await page.textContent('#state'), /again in \d+ s/);
     await page.screenshot({ path: join(pictures, 'waiting.png') });
     const { tick } = await state(page);
-    second = await startServer({ pile: 'pyramid:base=4' },
-                               { data: first.data, web: new URL(first.url).host });
+    second = await startServer(
+      { pile: 'pyramid:base=4' },
+      { data: first.data, web: new URL(first.url).host },
+    );
     await until(page, (h) => h.state === 'live' && h.tick > tick);
     assert.ok((await state(page)).losses >= 1);
   } finally {

@@ -23,12 +23,18 @@ class Program {
     this.errors = '';
     this.status = null;
     this.child = spawn(huestep, words, { stdio: ['ignore', 'pipe', 'pipe'] });
-    this.child.stdout.on('data', (text) => { this.output += text; });
-    this.child.stderr.on('data', (text) => { this.errors += text; });
-    this.ended = new Promise((done) => this.child.on('close', (status, signal) => {
-      this.status = signal ?? status;
-      done(this.status);
-    }));
+    this.child.stdout.on('data', (text) => {
+      this.output += text;
+    });
+    this.child.stderr.on('data', (text) => {
+      this.errors += text;
+    });
+    this.ended = new Promise((done) =>
+      this.child.on('close', (status, signal) => {
+        this.status = signal ?? status;
+        done(this.status);
+      }),
+    );
   }
 
   /** Asks it to end; its exit status. */
@@ -48,9 +54,21 @@ class Program {
  */
 export async function startServer(sessions, where = {}) {
   const data = where.data ?? mkdtempSync(join(tmpdir(), 'huestep-browser-'));
-  const named = Object.entries(sessions).flatMap(([name, scene]) => ['--session', `${name}=${scene}`]);
-  const program = new Program('serve', '--listen', '127.0.0.1:0', '--web', where.web ?? '127.0.0.1:0',
-                              '--data', data, '--open', ...named);
+  const named = Object.entries(sessions).flatMap(([name, scene]) => [
+    '--session',
+    `${name}=${scene}`,
+  ]);
+  const program = new Program(
+    'serve',
+    '--listen',
+    '127.0.0.1:0',
+    '--web',
+    where.web ?? '127.0.0.1:0',
+    '--data',
+    data,
+    '--open',
+    ...named,
+  );
   const bots = [];
   const line = (pattern) => () => {
     if (program.status !== null) throw new Error(`the server ended: ${program.errors}`);
@@ -84,7 +102,10 @@ export async function startServer(sessions, where = {}) {
 
 /** What a subcommand answers in JSON. */
 export function ask(...words) {
-  const { status, stdout, stderr } = spawnSync(huestep, [...words, '--json'], { encoding: 'utf8', maxBuffer: 1 << 28 });
+  const { status, stdout, stderr } = spawnSync(huestep, [...words, '--json'], {
+    encoding: 'utf8',
+    maxBuffer: 1 << 28,
+  });
   if (status !== 0) throw new Error(`huestep ${words.join(' ')}: ${stderr}`);
   return JSON.parse(stdout);
 }

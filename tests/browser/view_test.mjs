@@ -9,10 +9,13 @@ import { fileURLToPath } from 'node:url';
 const root = process.env.HUESTEP_SOURCE ?? fileURLToPath(new URL('../..', import.meta.url));
 // As a data address, so that the page's files need no package.json to count as modules.
 const source = readFileSync(join(root, 'client/web/view.js'), 'utf8');
-const { readFrame, ViewError, headerBytes } = await import(`data:text/javascript,${encodeURIComponent(source)}`);
+const { readFrame, ViewError, headerBytes } = await import(
+  `data:text/javascript,${encodeURIComponent(source)}`
+);
 
 const corpus = join(root, 'tests/protocol/corpus');
-const frames = readdirSync(corpus).filter((name) => name.startsWith('View-'))
+const frames = readdirSync(corpus)
+  .filter((name) => name.startsWith('View-'))
   .map((name) => ({ name, bytes: readFileSync(join(corpus, name)) }));
 
 const bufferOf = (bytes) => bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length);
@@ -31,8 +34,11 @@ console.log(`seed ${seed}`);
 
 /** What Cap'n Proto itself reads. */
 function decoded(bytes) {
-  const json = execFileSync('capnp', ['convert', 'binary:json', '-I', root, join(root, 'protocol/messages.capnp'), 'View'],
-                            { input: segmentTable(bytes.subarray(headerBytes)) });
+  const json = execFileSync(
+    'capnp',
+    ['convert', 'binary:json', '-I', root, join(root, 'protocol/messages.capnp'), 'View'],
+    { input: segmentTable(bytes.subarray(headerBytes)) },
+  );
   return JSON.parse(json);
 }
 
@@ -60,18 +66,31 @@ function plain(view) {
       y: view.contacts.floats[view.contacts.stride * i + 1],
       colour: view.contacts.bytes[4 * view.contacts.stride * i + 8],
     })),
-    shapes: shapes === null ? [] : Array.from({ length: shapes.count }, (_, i) => ({
-      body: shapes.body[i], radius: shapes.radius[i], kind: kinds[shapes.kind[i]],
-      vertexCount: shapes.first[i + 1] - shapes.first[i],
-    })),
+    shapes:
+      shapes === null
+        ? []
+        : Array.from({ length: shapes.count }, (_, i) => ({
+            body: shapes.body[i],
+            radius: shapes.radius[i],
+            kind: kinds[shapes.kind[i]],
+            vertexCount: shapes.first[i + 1] - shapes.first[i],
+          })),
     vertices: shapes === null ? [] : [...shapes.vertices],
   };
 }
 
-test('it reads what Cap\'n Proto reads', () => {
+test("it reads what Cap'n Proto reads", () => {
   assert.ok(frames.length > 0);
   for (const { name, bytes } of frames) {
-    const wanted = { poses: [], flags: [], joints: [], contacts: [], shapes: [], vertices: [], ...decoded(bytes) };
+    const wanted = {
+      poses: [],
+      flags: [],
+      joints: [],
+      contacts: [],
+      shapes: [],
+      vertices: [],
+      ...decoded(bytes),
+    };
     delete wanted.bodies;
     assert.deepEqual(plain(readFrame(bufferOf(bytes))), wanted, name);
   }
@@ -79,8 +98,11 @@ test('it reads what Cap\'n Proto reads', () => {
 
 /** Writes a View as Cap'n Proto itself does, with the frame's header in front. */
 function encoded(view) {
-  const payload = execFileSync('capnp', ['convert', 'json:flat', '-I', root, join(root, 'protocol/messages.capnp'), 'View'],
-                               { input: JSON.stringify(view) });
+  const payload = execFileSync(
+    'capnp',
+    ['convert', 'json:flat', '-I', root, join(root, 'protocol/messages.capnp'), 'View'],
+    { input: JSON.stringify(view) },
+  );
   const header = Buffer.alloc(headerBytes);
   header.writeUInt16LE(0x4875, 0);
   header.writeUInt8(1, 2);
@@ -89,7 +111,7 @@ function encoded(view) {
   return Buffer.concat([header, payload]);
 }
 
-test('it reads what Cap\'n Proto writes, joints and shapes and all', () => {
+test("it reads what Cap'n Proto writes, joints and shapes and all", () => {
   const random = randomFrom(seed);
   const real = () => Math.fround(random(2000) / 8 - 100);
   const list = (count, make) => Array.from({ length: count }, make);
@@ -98,14 +120,23 @@ test('it reads what Cap\'n Proto writes, joints and shapes and all', () => {
     const kinds = ['circle', 'capsule', 'polygon', 'segment'];
     const shapes = list(random(12), () => {
       const kind = random(4);
-      return { body: random(bodies), radius: real(), kind: kinds[kind], vertexCount: [1, 2, 3 + random(6), 2][kind] };
+      return {
+        body: random(bodies),
+        radius: real(),
+        kind: kinds[kind],
+        vertexCount: [1, 2, 3 + random(6), 2][kind],
+      };
     });
     const view = {
-      tick: String(random(2 ** 31) * 2 ** 20), root: String((BigInt(random(2 ** 31)) << 33n) + BigInt(random(2 ** 31))),
-      players: random(64), definitions: 1 + random(99),
-      poses: list(4 * bodies, real), flags: list(bodies, () => random(16)),
+      tick: String(random(2 ** 31) * 2 ** 20),
+      root: String((BigInt(random(2 ** 31)) << 33n) + BigInt(random(2 ** 31))),
+      players: random(64),
+      definitions: 1 + random(99),
+      poses: list(4 * bodies, real),
+      flags: list(bodies, () => random(16)),
       contacts: list(random(9), () => ({ x: real(), y: real(), colour: random(256) })),
-      bodies: list(bodies, () => random(2 ** 31)), shapes,
+      bodies: list(bodies, () => random(2 ** 31)),
+      shapes,
       vertices: list(2 * shapes.reduce((sum, shape) => sum + shape.vertexCount, 0), real),
       joints: list(4 * random(7), real),
     };
@@ -118,9 +149,18 @@ test('it reads what Cap\'n Proto writes, joints and shapes and all', () => {
 test('a frame cut short or with a wrong header is refused with a sentence', () => {
   const { bytes } = frames[0];
   for (let length = 0; length < bytes.length; ++length) {
-    assert.throws(() => readFrame(bufferOf(bytes.subarray(0, length))), ViewError, `${length} bytes`);
+    assert.throws(
+      () => readFrame(bufferOf(bytes.subarray(0, length))),
+      ViewError,
+      `${length} bytes`,
+    );
   }
-  for (const [at, value] of [[0, 0], [2, 9], [3, 12], [4, 1]]) {
+  for (const [at, value] of [
+    [0, 0],
+    [2, 9],
+    [3, 12],
+    [4, 1],
+  ]) {
     const other = Buffer.from(bytes);
     other[at] = value;
     assert.throws(() => readFrame(bufferOf(other)), ViewError, `byte ${at}`);
