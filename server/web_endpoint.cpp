@@ -99,6 +99,7 @@ struct WebEndpoint::Inside {
     unsigned refuseViewer(lws* wsi, const Peer& peer) const;
     int established(lws* wsi, Peer& peer);
     int writeView(lws* wsi, Peer& peer);
+    static void sayGoodbye(lws* wsi);
     void forget(lws* wsi);
     bool takeToken(const Peer& peer);
     std::vector<WebSession> sessionList() const;
@@ -167,7 +168,8 @@ Status WebEndpoint::Inside::makeContext() {
         }
         return inside->event(wsi, reason, {static_cast<const char*>(in), in ? length : 0});
     };
-    protocols[0].rx_buffer_size = 128;  // whatever a viewer sends is not read anyway
+    protocols[0].rx_buffer_size = 128;       // whatever a viewer sends is not read anyway
+    protocols[0].tx_packet_size = 1u << 20;  // 0: sends are cut to the size above
     liveness.secs_since_valid_ping = config.limits.pingSeconds;
     liveness.secs_since_valid_hangup = config.limits.silenceSeconds;
 
@@ -353,13 +355,17 @@ int WebEndpoint::Inside::established(lws* wsi, Peer& peer) {
     return 0;
 }
 
+/// From outside the writable turn, in which `lws_close_reason` is not heeded. The viewer closes
+/// when it has read the reason, or `endStop` does.
+void WebEndpoint::Inside::sayGoodbye(lws* wsi) {
+    std::string why = "the server stops";
+    lws_close_reason(wsi, LWS_CLOSE_STATUS_GOINGAWAY, reinterpret_cast<unsigned char*>(why.data()),
+                     why.size());
+    lws_set_timeout(wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_SYNC);
+}
+
 int WebEndpoint::Inside::writeView(lws* wsi, Peer& peer) {
-    if (stopping) {
-        std::string why = "the server stops";
-        lws_close_reason(wsi, LWS_CLOSE_STATUS_GOINGAWAY,
-                         reinterpret_cast<unsigned char*>(why.data()), why.size());
-        return -1;
-    }
+    if (stopping) return 0;
     const SharedWebFrame frame = peer.viewer ? peer.viewer->take() : nullptr;
     if (!frame) return 0;
     const std::size_t bytes = frame->bytes.size() - frame->room;
@@ -406,9 +412,12 @@ void WebEndpoint::Inside::beginStop() {
     stopping = true;
     listener.close();
     if (viewerCount() == 0) return endStop();
+    // A copy, as a connection that is closed may be forgotten at once.
+    std::vector<lws*> watching;
     for (auto& [wsi, peer] : peers) {
-        if (peer.viewer) lws_callback_on_writable(wsi);
+        if (peer.viewer) watching.push_back(wsi);
     }
+    for (lws* wsi : watching) sayGoodbye(wsi);
     uv_timer_start(
         farewell, [](uv_timer_t* timer) { static_cast<Inside*>(timer->data)->endStop(); },
         config.limits.farewellMs, 0);

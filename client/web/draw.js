@@ -18,6 +18,7 @@ const [lookStatic, lookAsleep, lookKinematic, lookAwake, lookPlayer] = [0, 1, 2,
 const shapesAPath = 64;
 /** Below this many pixels nobody sees that a corner is round. */
 const roundPixels = 1.5;
+const roundDotPixels = 1.8;
 
 /** @param {number} flags of a View @returns {number} place in `looks` */
 export function lookOf(flags) {
@@ -80,8 +81,11 @@ export class Painter {
 
   resize() {
     this.pixels = Math.min(2, window.devicePixelRatio || 1);
-    this.element.width = Math.max(1, Math.round(this.camera.width * this.pixels));
-    this.element.height = Math.max(1, Math.round(this.camera.height * this.pixels));
+    const width = Math.max(1, Math.round(this.camera.width * this.pixels));
+    const height = Math.max(1, Math.round(this.camera.height * this.pixels));
+    if (width === this.element.width && height === this.element.height) return;
+    this.element.width = width;
+    this.element.height = height;
   }
 
   /** @param {import('./view.js').View | null} view */
@@ -236,8 +240,12 @@ export class Painter {
     for (const i of list) {
       const x = contacts.floats[contacts.stride * i];
       const y = contacts.floats[contacts.stride * i + 1];
-      canvas.moveTo(x + radius, y);
-      canvas.arc(x, y, radius, 0, 2 * Math.PI);
+      if (pixels * this.pixels > roundDotPixels) {
+        canvas.moveTo(x + radius, y);
+        canvas.arc(x, y, radius, 0, 2 * Math.PI);
+      } else {
+        canvas.rect(x - radius, y - radius, 2 * radius, 2 * radius);
+      }
     }
     if (ring) {
       canvas.lineWidth = 1.5 / camera.scale;

@@ -217,7 +217,7 @@ function pause() {
 function resize() {
   painter.resize();
   if (camera.fitted) fit();
-  redraw();
+  painter.draw(newest); // at once: a canvas of a new size is empty
 }
 
 window.setInterval(() => {

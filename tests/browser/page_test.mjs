@@ -148,6 +148,9 @@ test('frames of a scene of 1,000 bodies are drawn as they come', () =>
       now.tick - before.tick,
       'each tick is accounted for',
     );
+    // The server leaves frames out for a viewer that does not keep up; this one does.
+    const ticks = now.tick - before.tick;
+    assert.ok(received >= 0.7 * ticks, `${received} frames came in ${ticks} ticks`);
     await page.screenshot({ path: join(pictures, 'thousand.png') });
   }));
 
