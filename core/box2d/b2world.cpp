@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "core/box2d/notes.h"
-#include "core/collision/mass.h"
 #include "core/math/trig.h"
+#include "core/world/from_definition.h"
 
 namespace huestep {
 
@@ -60,16 +60,7 @@ class Shuffler {
 
 /// The exact mass of a body's shapes, for bodies whose shapes Box2D only has in part.
 b2MassData massDataOf(const BodyDef& body) {
-    std::vector<MassProperties> parts;
-    for (const ShapeDef& shape : body.shapes) {
-        ShapeInfo info{};
-        info.kind = static_cast<std::uint32_t>(shape.kind) |
-                    static_cast<std::uint32_t>(shape.vertexCount) << 8;
-        info.radius = shape.radius;
-        info.vertices = shape.vertices;
-        parts.push_back(massOf(hullOf<double>(info), static_cast<double>(shape.density)));
-    }
-    const MassProperties whole = combine(parts);
+    const MassProperties whole = massOf(body);
     b2MassData data;
     data.mass = static_cast<float>(whole.mass);
     data.center = {static_cast<float>(whole.center.x), static_cast<float>(whole.center.y)};

@@ -41,6 +41,16 @@ HullT<Real> hullOf(const ShapeInfo& shape) {
     return hull;
 }
 
+/// The hull's farthest point from `from`, m.
+template <class Real>
+Real reachOf(const HullT<Real>& hull, Vec2T<Real> from = {}) {
+    Real squared{0};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(hull.count); ++i) {
+        squared = maxOf(squared, lengthSquared(hull.vertices[i] - from));
+    }
+    return std::sqrt(squared) + hull.radius;
+}
+
 /// The tight box around the hull at the pose.
 template <class Real>
 BoundsT<Real> boundsOf(const HullT<Real>& hull, const PoseT<Real>& pose) {

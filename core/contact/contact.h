@@ -27,7 +27,6 @@ struct Contact {
     float roundness = 0;  ///< m: the larger radius
     float slack = 0;      ///< m: how far the bodies may move while a manifold is kept
     std::uint8_t pointCount = 0;  ///< 0: not touching
-    bool made = false;            ///< the manifold below is that of `state.relative`
 
     // The manifold at `state.relative`, turned into the world as body A was then. Anchors are from
     // the two centres of mass; they coincided when the manifold was made.

@@ -47,22 +47,15 @@ void setManifold(Contact& contact, const Manifold& manifold) {
         contact.separation[i] = manifold.points[i].separation;
         contact.feature[i] = manifold.points[i].feature;
     }
-    contact.made = true;
-}
-
-Pose canonical(const Pose& pose) {
-    return {{canonicalZero(pose.p.x), canonicalZero(pose.p.y)},
-            {canonicalZero(pose.q.c), canonicalZero(pose.q.s)}};
 }
 
 }  // namespace
 
 void remakeManifold(Contact& contact, const NarrowPhaseInput& in) {
-    const int count = contact.pointCount;
     setManifold(contact, collide(in.hulls[contact.placeA], in.hulls[contact.placeB],
                                  contact.state.relative, speculativeDistance));
-    // A snapshot from outside may claim a contact where there is none: it has no points then.
-    if (contact.pointCount != count && contact.pointCount < 2) {
+    // A snapshot from outside may claim impulses of a point that is not there.
+    if (contact.pointCount < 2) {
         contact.state.normalImpulse[1] = contact.state.tangentImpulse[1] = 0.0f;
     }
 }
@@ -73,10 +66,9 @@ ContactUpdate updateContact(Contact& contact, const NarrowPhaseInput& in) {
         return ContactUpdate::Apart;
     }
     const Pose now =
-        canonical(relative(in.motions[contact.bodyA].pose(), in.motions[contact.bodyB].pose()));
+        canonicalZero(relative(in.motions[contact.bodyA].pose(), in.motions[contact.bodyB].pose()));
     const Hull& hullA = in.hulls[contact.placeA];
     const Hull& hullB = in.hulls[contact.placeB];
-    if (contact.pointCount > 0 && !contact.made) remakeManifold(contact, in);
     if (mayRecycle(contact, now, in)) return ContactUpdate::Recycled;
 
     const int oldCount = contact.pointCount;

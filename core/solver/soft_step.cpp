@@ -211,9 +211,7 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, const ContactKe
         }
     });
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());
-    std::sort(hits.begin(), hits.end(), [](const ContactHit& a, const ContactHit& b) {
-        return a.shapeA != b.shapeA ? a.shapeA < b.shapeA : a.shapeB < b.shapeB;
-    });
+    std::sort(hits.begin(), hits.end(), keyBefore<ContactHit>);
     timer.done(Stage::Batches);
 }
 

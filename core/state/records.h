@@ -27,7 +27,7 @@ constexpr std::uint32_t sizeOf(FieldType type) {
     return type == FieldType::U64 ? 8u : 4u;
 }
 
-/// A run of `count` values of one type in a record. `rest.quietTicks` style names are for people.
+/// A run of `count` values of one type in a record; the name is for people.
 struct Field {
     const char* name;
     FieldType type;

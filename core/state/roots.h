@@ -22,11 +22,12 @@ std::vector<std::uint64_t> leavesOf(std::span<const std::byte> bytes, std::size_
 /// The top of the tree over the leaves; 0 for none.
 std::uint64_t rootOf(std::vector<std::uint64_t> nodes);
 
-/// What the motion root covers besides every body's motion.
+/// Over every body's motion, the tick and the counters.
 std::uint64_t motionRoot(const WorldState& state);
 std::vector<std::uint64_t> motionLeaves(const WorldState& state);
 
-/// Definitions change by command alone: their roots are kept until `definitionsChanged`.
+/// Definitions change by command alone: their roots are kept until `definitionsKnown` is
+/// cleared, by whoever changes one.
 struct RootCache {
     bool definitionsKnown = false;
     std::uint64_t definitions = 0;

@@ -25,6 +25,15 @@ PlayerRecord* World::Data::findPlayer(PlayerId id) {
     return at ? &state.players[*at] : nullptr;
 }
 
+std::span<const ShapeInfo> World::Data::shapesOf(BodyId id) const {
+    const std::vector<ShapeInfo>& shapes = state.shapes;
+    const auto from = std::lower_bound(shapes.begin(), shapes.end(), id,
+                                       [](const ShapeInfo& s, BodyId k) { return s.body < k; });
+    const auto to = std::upper_bound(from, shapes.end(), id,
+                                     [](BodyId k, const ShapeInfo& s) { return k < s.body; });
+    return {from, to};
+}
+
 void World::Data::wake(std::uint32_t body) {
     if (state.bodies[body].dynamic()) state.motions[body].rest = 0;
 }
@@ -143,12 +152,7 @@ std::optional<std::uint32_t> World::find(BodyId id) const {
 }
 
 std::span<const ShapeInfo> World::shapesOf(BodyId id) const {
-    const std::vector<ShapeInfo>& shapes = m_data->state.shapes;
-    const auto from = std::lower_bound(shapes.begin(), shapes.end(), id,
-                                       [](const ShapeInfo& s, BodyId k) { return s.body < k; });
-    const auto to = std::upper_bound(from, shapes.end(), id,
-                                     [](BodyId k, const ShapeInfo& s) { return k < s.body; });
-    return {from, to};
+    return m_data->shapesOf(id);
 }
 
 void World::dropAccelerators() {

@@ -15,10 +15,6 @@ constexpr std::uint32_t contactGrain = 256;
 constexpr float recyclePart = 0.2f;
 constexpr float recycleMost = 0.05f;  // m
 
-bool keyBefore(const ContactChange& a, const ContactChange& b) {
-    return a.shapeA != b.shapeA ? a.shapeA < b.shapeA : a.shapeB < b.shapeB;
-}
-
 /// What of a contact follows from its two shapes.
 Contact contactOf(const ShapePair& pair, const Shapes& known, std::span<const ShapeInfo> shapes) {
     const ShapeInfo& a = shapes[pair.a];
@@ -51,16 +47,11 @@ void World::Data::layOutContacts() {
     if (!acc.contactsValid) {
         // After a restore or a change of definitions the contacts are in the state alone.
         for (const ContactState& c : state.contacts) {
-            const auto placeOf = [&](ShapeId id) {
-                return static_cast<std::uint32_t>(
-                    std::lower_bound(state.shapes.begin(), state.shapes.end(), id,
-                                     [](const ShapeInfo& s, ShapeId k) { return s.id < k; }) -
-                    state.shapes.begin());
-            };
-            Contact contact =
-                contactOf({placeOf(c.shapeA), placeOf(c.shapeB)}, shapes, state.shapes);
+            // Both shapes are there: whoever removes one removes its contacts.
+            const ShapePair pair{*placeById(state.shapes, c.shapeA),
+                                 *placeById(state.shapes, c.shapeB)};
+            Contact contact = contactOf(pair, shapes, state.shapes);
             contact.state = c;
-            contact.pointCount = 2;  // until the manifold is made again
             remakeManifold(contact, narrowPhaseInput());
             old.push_back(contact);
         }
@@ -140,8 +131,8 @@ void World::Data::collideAll(Executor* executor) {
         }
         woke = anyAsleep && wakeTouched(disturbs);
     } while (woke);
-    std::sort(events.begins.begin(), events.begins.end(), keyBefore);
-    std::sort(events.ends.begin(), events.ends.end(), keyBefore);
+    std::sort(events.begins.begin(), events.begins.end(), keyBefore<ContactChange>);
+    std::sort(events.ends.begin(), events.ends.end(), keyBefore<ContactChange>);
 }
 
 }  // namespace huestep

@@ -17,11 +17,7 @@ float sizeOf(const Hull& hull) {
     const auto count = static_cast<std::size_t>(hull.count);
     for (std::size_t v = 0; v < count; ++v) middle += hull.vertices[v];
     middle = (1.0f / static_cast<float>(count)) * middle;
-    float size = 0.0f;
-    for (std::size_t v = 0; v < count; ++v) {
-        size = maxOf(size, length(hull.vertices[v] - middle));
-    }
-    return size + hull.radius;
+    return reachOf(hull, middle);
 }
 
 /// Places in the order of ids given, those without one after all others in their own order.
@@ -144,13 +140,15 @@ void World::Data::rebuildShapes() {
     for (std::uint32_t body = 0; body < bodies; ++body) {
         const BodyInfo& info = state.bodies[body];
         s.first[body] = shape;
-        if (info.type() != BodyType::Static) s.reach[body] = reachOf(body);
         if (info.type() == BodyType::Kinematic) s.kinematic.push_back(body);
         for (; shape < state.shapes.size() && state.shapes[shape].body == info.id; ++shape) {
             const ShapeInfo& record = state.shapes[shape];
             const Hull hull = hullOf<float>(record);
             s.hulls.push_back(hull);
             s.sizes.push_back(sizeOf(hull));
+            if (info.type() != BodyType::Static) {
+                s.reach[body] = maxOf(s.reach[body], huestep::reachOf(hull));
+            }
             s.proxies.push_back({body, record.filter(), info.dynamic(), jointed[body] != 0});
         }
     }

@@ -26,6 +26,12 @@ struct ContactHit {
     friend bool operator==(const ContactHit&, const ContactHit&) = default;
 };
 
+/// The key order of contact events.
+template <class Event>
+constexpr bool keyBefore(const Event& a, const Event& b) {
+    return a.shapeA != b.shapeA ? a.shapeA < b.shapeA : a.shapeB < b.shapeB;
+}
+
 inline constexpr float hitSpeed = 1.0f;  ///< m/s
 
 /// What became of one command, in the order applied.

@@ -1,22 +1,8 @@
 #include "core/world/from_definition.h"
 
-#include "core/collision/mass.h"
 #include "core/state/validate.h"
 
 namespace huestep {
-
-namespace {
-
-MassProperties massOf(const BodyDef& def) {
-    std::vector<MassProperties> parts;
-    for (const ShapeDef& shape : def.shapes) {
-        parts.push_back(
-            massOf(hullOf<double>(shapeInfo(shape, {})), static_cast<double>(shape.density)));
-    }
-    return combine(parts);
-}
-
-}  // namespace
 
 ShapeInfo shapeInfo(const ShapeDef& def, Vec2 localCenter) {
     ShapeInfo s{};
@@ -35,6 +21,15 @@ ShapeInfo shapeInfo(const ShapeDef& def, Vec2 localCenter) {
     s.mask = def.filter.mask;
     s.group = def.filter.group;
     return s;
+}
+
+MassProperties massOf(const BodyDef& def) {
+    std::vector<MassProperties> parts;
+    for (const ShapeDef& shape : def.shapes) {
+        parts.push_back(
+            massOf(hullOf<double>(shapeInfo(shape, {})), static_cast<double>(shape.density)));
+    }
+    return combine(parts);
 }
 
 BodyRecords recordsOf(const BodyDef& def) {

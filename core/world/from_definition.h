@@ -3,11 +3,15 @@
 
 #include <vector>
 
+#include "core/collision/mass.h"
 #include "core/result.h"
 #include "core/scene/scene.h"
 #include "core/state/records.h"
 
 namespace huestep {
+
+/// Mass, centre and inertia of a body's shapes about its origin's frame; nothing is rounded.
+MassProperties massOf(const BodyDef& def);
 
 /// The records of one body, its ids still 0. Mass is summed in double and rounded once.
 struct BodyRecords {

@@ -14,24 +14,12 @@ constexpr std::size_t maxPlayerShapes = 8;  // a body
 constexpr float maxPlayerReach = 10.0f;     // m, from a body's centre
 constexpr std::uint32_t maxCrowd = 64;      // shapes whose bounds a spawned shape may overlap
 
-float reachOf(const ShapeInfo& shape) {
-    const Hull hull = hullOf<float>(shape);
-    float reach = 0.0f;
-    for (std::size_t v = 0; v < static_cast<std::size_t>(hull.count); ++v) {
-        reach = maxOf(reach, length(hull.vertices[v]) + hull.radius);
-    }
-    return reach;
-}
-
 }  // namespace
 
 float World::Data::reachOf(std::uint32_t body) const {
-    const BodyId id = state.bodies[body].id;
-    auto at = std::lower_bound(state.shapes.begin(), state.shapes.end(), id,
-                               [](const ShapeInfo& s, BodyId k) { return s.body < k; });
     float reach = 0.0f;
-    for (; at != state.shapes.end() && at->body == id; ++at) {
-        reach = maxOf(reach, huestep::reachOf(*at));
+    for (const ShapeInfo& shape : shapesOf(state.bodies[body].id)) {
+        reach = maxOf(reach, huestep::reachOf(hullOf<float>(shape)));
     }
     return reach;
 }
@@ -81,7 +69,8 @@ Rejection World::Data::judge(const Spawn& spawn, PlayerId author) {
             return Rejection::NotAllowed;
         }
         for (const ShapeInfo& shape : records.shapes) {
-            if (huestep::reachOf(shape) > maxPlayerReach) return Rejection::NotAllowed;
+            if (huestep::reachOf(hullOf<float>(shape)) > maxPlayerReach)
+                return Rejection::NotAllowed;
             if (crowded(shape, records.motion.pose())) return Rejection::TooCrowded;
         }
     }

@@ -76,8 +76,8 @@ struct World::Data {
     [[nodiscard]] std::optional<std::uint32_t> findBody(BodyId id) const;
     [[nodiscard]] std::optional<std::uint32_t> findJoint(JointId id) const;
     [[nodiscard]] PlayerRecord* findPlayer(PlayerId id);
+    [[nodiscard]] std::span<const ShapeInfo> shapesOf(BodyId id) const;
     void wake(std::uint32_t body);
-    [[nodiscard]] std::span<Contact> contacts() { return accelerators.contacts; }
     void contactsToState() const;
     /// To be called before bodies, shapes or joints come or go.
     void changeDefinitions();
@@ -95,7 +95,8 @@ struct World::Data {
     Rejection judge(const Spawn& spawn, PlayerId author);
     [[nodiscard]] std::size_t spawnedBy(PlayerId player);
     [[nodiscard]] bool crowded(const ShapeInfo& shape, const Pose& pose) const;
-    /// Farthest point of the body's shapes from its centre, m.
+    /// Farthest point of the body's shapes from its centre, m. From the state: a body that a
+    /// command of this tick added has one too.
     [[nodiscard]] float reachOf(std::uint32_t body) const;
 
     // commands.cpp
