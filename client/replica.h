@@ -87,8 +87,6 @@ class Replica {
     std::vector<protocol::Message> takeOutgoing();
 
     [[nodiscard]] const World* world() const { return m_world ? &*m_world : nullptr; }
-    /// For tests of desync reports: what `World::corruptForTest` needs.
-    [[nodiscard]] World* worldForTest() { return m_world ? &*m_world : nullptr; }
     [[nodiscard]] bool following() const { return m_state == State::Following; }
     [[nodiscard]] PlayerId player() const { return m_statistics.player; }
     [[nodiscard]] std::uint64_t committed() const { return m_committed; }

@@ -308,9 +308,9 @@ bool Checker::joint(const Place& place, const JointDef& joint, std::size_t bodyC
 }
 
 bool Checker::players(const Place& place, const PlayerDef& players) {
-    if (!within(place.at("maxSpawned"), players.maxSpawned, 0u, 1024u) ||
-        !within(place.at("maxImpulse"), players.maxImpulse, 0.0f, 1.0e9f) ||
-        !within(place.at("maxForce"), players.maxForce, 0.0f, 1.0e9f)) {
+    if (!within(place.at("maxSpawned"), players.maxSpawned, 0u, caps::maxSpawned) ||
+        !within(place.at("maxImpulse"), players.maxImpulse, 0.0f, caps::maxPush) ||
+        !within(place.at("maxForce"), players.maxForce, 0.0f, caps::maxPush)) {
         return false;
     }
     if (players.spawnPoints.size() > caps::maxSpawnPoints) {
@@ -339,8 +339,9 @@ bool Checker::limits(const Scene& scene) {
     return within(limits.at("bodies"), scene.limits.bodies, 0u, caps::maxBodies) &&
            within(limits.at("shapes"), scene.limits.shapes, 0u, caps::maxShapes) &&
            within(limits.at("joints"), scene.limits.joints, 0u, caps::maxJoints) &&
-           within(limits.at("commandsPerTick"), scene.limits.commandsPerTick, 1u, 65'536u) &&
-           within(limits.at("players"), scene.limits.players, 0u, 65'536u) &&
+           within(limits.at("commandsPerTick"), scene.limits.commandsPerTick, 1u,
+                  caps::maxCommands) &&
+           within(limits.at("players"), scene.limits.players, 0u, caps::maxPlayers) &&
            within(counters.at("nextBody"), scene.counters.nextBody, 1u, caps::maxId) &&
            within(counters.at("nextShape"), scene.counters.nextShape, 1u, caps::maxId) &&
            within(counters.at("nextJoint"), scene.counters.nextJoint, 1u, caps::maxId);

@@ -77,16 +77,16 @@ static_assert(fieldsTile<BodyMotion>());
 /// What a body is: changes only by command.
 struct BodyInfo {
     BodyId id;
-    std::uint32_t flags;  ///< BodyType in bits 0 and 1; `fixedRotation`, `maySleep`
-    PlayerId owner;       ///< who spawned it; 0: the host
-    float mass;           ///< kg; 0 unless dynamic
-    float inverseMass;    ///< 1/kg; 0 unless dynamic
-    float inertia;        ///< kg·m² about the centre of mass; 0 unless dynamic and free to turn
-    float inverseInertia;
-    Vec2 localCenter;  ///< m, centre of mass in the frame of the body's origin
-    float linearDamping;
-    float angularDamping;
-    float gravityScale;
+    std::uint32_t flags;   ///< BodyType in bits 0 and 1; `fixedRotation`, `maySleep`
+    PlayerId owner;        ///< who spawned it; 0: the host
+    float mass;            ///< kg; 0 unless dynamic
+    float inverseMass;     ///< 1/kg; 0 unless dynamic
+    float inertia;         ///< kg·m² about the centre of mass; 0 unless dynamic and free to turn
+    float inverseInertia;  ///< 1/(kg·m²); 0 where `inertia` is
+    Vec2 localCenter;      ///< m, centre of mass in the frame of the body's origin
+    float linearDamping;   ///< 1/s
+    float angularDamping;  ///< 1/s
+    float gravityScale;    ///< of the world's gravity
 
     static constexpr std::uint32_t typeMask = 3u;
     static constexpr std::uint32_t fixedRotation = 4u;
@@ -118,11 +118,11 @@ struct ShapeInfo {
     std::uint32_t kind;  ///< ShapeKind in bits 0 to 7, vertex count in bits 8 to 15
     float radius;        ///< m
     std::array<Vec2, maxPolygonVertices> vertices;  ///< m; unused ones are zero
-    float density;
-    float friction;
-    float restitution;
-    float rollingResistance;
-    float tangentSpeed;
+    float density;                                  ///< kg/m²
+    float friction;                                 ///< Coulomb coefficient
+    float restitution;                              ///< [0, 1]
+    float rollingResistance;                        ///< coefficient: of the radius
+    float tangentSpeed;                             ///< m/s, of the surface, as of a conveyor
     std::uint32_t category;
     std::uint32_t mask;
     std::int32_t group;
@@ -159,15 +159,15 @@ struct JointInfo {
     Vec2 anchorA;    ///< m, from body A's centre of mass, in its frame
     Vec2 anchorB;
     Rotation reference;
-    float length;    ///< m
-    Vec2 target;     ///< m, mouse joint: where body B's anchor is drawn to
-    float maxForce;  ///< N
-    float springHertz;
-    float springDamping;
-    float lower;
-    float upper;
-    float motorSpeed;
-    float motorMaxEffort;
+    float length;          ///< m
+    Vec2 target;           ///< m, mouse joint: where body B's anchor is drawn to
+    float maxForce;        ///< N
+    float springHertz;     ///< Hz
+    float springDamping;   ///< damping ratio
+    float lower;           ///< rad; distance: m
+    float upper;           ///< the same
+    float motorSpeed;      ///< rad/s; distance: m/s
+    float motorMaxEffort;  ///< N·m; distance: N
 
     static constexpr std::uint32_t collideConnected = 0x100u;
     static constexpr std::uint32_t spring = 0x200u;
@@ -272,17 +272,17 @@ struct WorldInfo {
     std::uint32_t nextShape;
     std::uint32_t nextJoint;
     std::uint32_t flags;  ///< `sleep`, `players`
-    Vec2 gravity;
-    float stepSeconds;
+    Vec2 gravity;         ///< m/s²
+    float stepSeconds;    ///< s
     std::uint32_t substeps;
     std::uint32_t maxBodies;
     std::uint32_t maxShapes;
     std::uint32_t maxJoints;
-    std::uint32_t maxCommandsPerTick;
+    std::uint32_t maxCommandsPerTick;  ///< of all players together
     std::uint32_t maxPlayers;
-    std::uint32_t maxSpawned;
-    float maxImpulse;
-    float maxForce;
+    std::uint32_t maxSpawned;     ///< bodies, a player's at a time
+    float maxImpulse;             ///< N·s, of a player's command
+    float maxForce;               ///< N, of a player's command or grab
     std::uint32_t joinedPlayers;  ///< how many players ever joined
     std::uint32_t reserved;       ///< 0
 

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstring>
+#include <numbers>
 
 #include "core/collision/hull.h"
 #include "core/math/finite.h"
@@ -71,6 +72,22 @@ bool within(float v, float low, float high) {
     return v >= low && v <= high;
 }
 
+bool within(Vec2 v, float most) {
+    return within(v.x, -most, most) && within(v.y, -most, most);
+}
+
+/// Counter-clockwise, once around, every corner a left turn: then no vertex is outside an edge.
+bool isConvex(const Hull& hull) {
+    int rounds = 0;
+    for (int i = 0; i < hull.count; ++i) {
+        const Vec2 here = hull.normals[static_cast<std::size_t>(i)];
+        const Vec2 next = hull.normals[static_cast<std::size_t>(hull.next(i))];
+        if (cross(here, next) <= 0.0f) return false;
+        rounds += here.y < 0.0f && next.y >= 0.0f;
+    }
+    return rounds == 1;
+}
+
 // A centre of mass may be farther out than its body's origin, by the extent of the shapes.
 constexpr float farthestCenter = maxCoordinate + 2.0f * caps::maxExtent;
 constexpr float maxMass = 1.0e20f;  // kg; far above that of any definition
@@ -82,14 +99,18 @@ std::string badInfo(const WorldInfo& w) {
     if (w.substeps < 1 || w.substeps > 64) return "world substeps: out of range";
     if (w.nextBody == 0 || w.nextShape == 0 || w.nextJoint == 0) return "world counters: zero";
     if (w.flags > (WorldInfo::sleep | WorldInfo::players)) return "world flags: unknown bits";
-    if (!within(w.gravity.x, -caps::maxGravity, caps::maxGravity) ||
-        !within(w.gravity.y, -caps::maxGravity, caps::maxGravity)) {
-        return "world gravity: out of range";
-    }
+    if (!within(w.gravity, caps::maxGravity)) return "world gravity: out of range";
     if (w.maxBodies > caps::maxBodies || w.maxShapes > caps::maxShapes ||
         w.maxJoints > caps::maxJoints) {
         return "world limits: out of range";
     }
+    if (!(w.maxCommandsPerTick >= 1 && w.maxCommandsPerTick <= caps::maxCommands)) {
+        return "world maxCommandsPerTick: out of range";
+    }
+    if (w.maxPlayers > caps::maxPlayers) return "world maxPlayers: out of range";
+    if (w.maxSpawned > caps::maxSpawned) return "world maxSpawned: out of range";
+    if (!within(w.maxImpulse, 0, caps::maxPush)) return "world maxImpulse: out of range";
+    if (!within(w.maxForce, 0, caps::maxPush)) return "world maxForce: out of range";
     if (w.reserved != 0) return "world reserved: not zero";
     return {};
 }
@@ -215,10 +236,7 @@ std::string faultOf(const BodyInfo& b) {
     if (b.dynamic() != (b.inverseMass > 0.0f)) return "inverseMass: does not fit the type";
     if (b.mass < 0 || b.inertia < 0 || b.inverseInertia < 0) return "mass: negative";
     if (b.mass > maxMass) return "mass: out of range";
-    if (!within(b.localCenter.x, -caps::maxExtent, caps::maxExtent) ||
-        !within(b.localCenter.y, -caps::maxExtent, caps::maxExtent)) {
-        return "localCenter: out of range";
-    }
+    if (!within(b.localCenter, caps::maxExtent)) return "localCenter: out of range";
     if (!b.dynamic() && b.inverseInertia != 0) return "inverseInertia: does not fit the type";
     if (!within(b.linearDamping, 0, 1000)) return "linearDamping: out of range";
     if (!within(b.angularDamping, 0, 1000)) return "angularDamping: out of range";
@@ -252,23 +270,22 @@ std::string faultOf(const ShapeInfo& s) {
     if (!within(s.density, 0, caps::maxDensity)) return "density: out of range";
     // From the centre of mass: twice what is allowed from the origin.
     for (const Vec2 v : s.vertices) {
-        const float most = 2.0f * caps::maxExtent;
-        if (!within(v.x, -most, most) || !within(v.y, -most, most)) return "vertices: out of range";
+        if (!within(v, 2.0f * caps::maxExtent)) return "vertices: out of range";
     }
     const auto hull = hullOf<float>(s);
     for (int i = 0; n > 1 && i < n; ++i) {
-        const auto here = static_cast<std::size_t>(i);
-        const auto next = static_cast<std::size_t>(hull.next(i));
-        if (hull.normals[here] == Vec2{}) return "vertices: two coincide";
-        if (n > 2 && cross(hull.normals[here], hull.normals[next]) <= 0.0f) {
-            return "vertices: not convex";
-        }
+        if (hull.normals[static_cast<std::size_t>(i)] == Vec2{}) return "vertices: two coincide";
     }
+    if (n > 2 && !isConvex(hull)) return "vertices: not convex";
     return {};
 }
 
 std::string faultOf(const JointInfo& j) {
     if ((j.flags & 0xffu) > 2 || j.flags > 0x1fff) return "flags: unknown";
+    // From the centres of mass, as far out as those may be.
+    if (!within(j.anchorA, farthestCenter)) return "anchorA: out of range";
+    if (!within(j.anchorB, farthestCenter)) return "anchorB: out of range";
+    if (!within(j.target, maxCoordinate)) return "target: out of range";
     if (!unit(j.reference)) return "reference: not a unit vector";
     if (!within(j.length, 0, caps::maxJointLength)) return "length: out of range";
     if (!within(j.maxForce, 0, caps::maxEffort)) return "maxForce: out of range";
@@ -276,7 +293,13 @@ std::string faultOf(const JointInfo& j) {
     if (!within(j.motorSpeed, -maxSpeed, maxSpeed)) return "motorSpeed: out of range";
     if (!within(j.springHertz, 0, 1000)) return "springHertz: out of range";
     if (!within(j.springDamping, 0, 1000)) return "springDamping: out of range";
-    if (j.has(JointInfo::limit) && j.lower > j.upper) return "lower: above upper";
+    if (!j.has(JointInfo::limit)) return {};
+    const bool turns = j.kind() == JointKind::Revolute;
+    const float least = turns ? -std::numbers::pi_v<float> : 0.0f;
+    const float most = turns ? std::numbers::pi_v<float> : caps::maxJointLength;
+    if (!within(j.lower, least, most)) return "lower: out of range";
+    if (!within(j.upper, least, most)) return "upper: out of range";
+    if (j.lower > j.upper) return "lower: above upper";
     return {};
 }
 

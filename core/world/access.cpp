@@ -161,11 +161,4 @@ void World::dropAccelerators() {
     m_data->roots = {};
 }
 
-void World::corruptForTest(BodyId body, std::uint32_t fieldIndex, std::uint32_t bit) {
-    const auto place = m_data->findBody(body);
-    if (!place || fieldIndex >= fieldsOf<BodyMotion>.size() || bit >= 32) return;
-    auto* bytes = reinterpret_cast<std::byte*>(&m_data->state.motions[*place]);
-    bytes[fieldsOf<BodyMotion>[fieldIndex].offset + bit / 8] ^= std::byte{1} << (bit % 8);
-}
-
 }  // namespace huestep

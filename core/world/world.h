@@ -160,15 +160,13 @@ class World {
     /// Forgets everything that is not state. Only speed changes: a test calls it at random ticks.
     void dropAccelerators();
 
-    /// Flips one bit of one state field of a body: a hook for tests of desync reports.
-    void corruptForTest(BodyId body, std::uint32_t fieldIndex, std::uint32_t bit);
-
     struct Data;  ///< opaque
 
  private:
     explicit World(std::unique_ptr<Data> data);
     std::unique_ptr<Data> m_data;
     friend std::optional<Difference> firstDifference(const World&, const World&);
+    friend struct WorldSpoiler;  // tests/core/spoil.h: no product has one
 };
 
 /// Where two worlds differ first: the world's own fields, then players, bodies, shapes, joints and

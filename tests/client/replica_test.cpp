@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/state/hash.h"
+#include "tests/core/spoil.h"
 
 namespace huestep::client {
 namespace {
@@ -116,7 +117,7 @@ TEST(Replica, AMismatchFreezesItsTickAsksForItAndNamesBodyAndField) {
     Table table;
     table.enter();
     for (int i = 0; i < 10; ++i) table.say(table.frame());
-    table.replica.worldForTest()->corruptForTest(2, 4, 12);
+    WorldSpoiler::flip(*table.replica.world(), 2, 4, 12);
     const World frozen = table.world;
     const std::uint64_t tick = table.world.tick();
     EXPECT_TRUE(table.say(table.frame()));
@@ -146,7 +147,7 @@ TEST(Replica, AMismatchFreezesItsTickAsksForItAndNamesBodyAndField) {
 TEST(Replica, IfTheServerNoLongerHasTheTickTheBlockOfBodiesIsNamed) {
     Table table;
     table.enter();
-    table.replica.worldForTest()->corruptForTest(2, 4, 12);
+    WorldSpoiler::flip(*table.replica.world(), 2, 4, 12);
     const std::uint64_t tick = table.world.tick();
     const std::vector<std::uint64_t> leaves = table.world.motionLeaves();
     table.say(table.frame());

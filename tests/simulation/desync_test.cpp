@@ -3,6 +3,7 @@
 #include "core/state/records.h"
 #include "runs.h"
 #include "simulation.h"
+#include "tests/core/spoil.h"
 
 namespace huestep::test {
 namespace {
@@ -36,12 +37,12 @@ TEST(Desync, AFlippedBitInOneClientsWorldIsNamedByTickBodyAndFieldWithinASecond)
 
         client::Replica& victim = simulation.client(1).replica();
         ASSERT_TRUE(victim.following());
-        World& world = *victim.worldForTest();
+        const World& world = *victim.world();
         const BodyId body = someDynamicBody(world, simulation.dice());
         const auto field = static_cast<std::uint32_t>(simulation.dice().between(0, 6));
         const auto bit = static_cast<std::uint32_t>(simulation.dice().between(0, 21));
         const std::uint64_t tick = world.tick();
-        world.corruptForTest(body, field, bit);
+        WorldSpoiler::flip(world, body, field, bit);
 
         EXPECT_LT(timeToReport(simulation, 1), 1'000 * ms);
         const client::Statistics counts = victim.statistics();
@@ -74,9 +75,9 @@ TEST(Desync, AClientWhoseTickIsTooOldForTheServerGetsItsNewestState) {
     simulation.addClient(protocol::Role::Player, client::makeIdleBot());
     simulation.run(1'000 * ms);
     client::Replica& victim = simulation.client(0).replica();
-    World& world = *victim.worldForTest();
+    const World& world = *victim.world();
     const BodyId body = someDynamicBody(world, simulation.dice());
-    world.corruptForTest(body, 4, 20);
+    WorldSpoiler::flip(world, body, 4, 20);
     simulation.weather.link = {400 * ms, 0, 0};  // the answer comes long after both keyframes
     simulation.run(3'000 * ms);
     ASSERT_TRUE(victim.counts().lastDesync.has_value());

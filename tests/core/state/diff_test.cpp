@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "tests/core/spoil.h"
 #include "tests/core/support.h"
 
 namespace huestep::test {
@@ -14,7 +15,7 @@ TEST(Difference, NamesTheBodyAndTheFieldOfAnyFlippedBitWithBothValues) {
     for (std::uint32_t field = 0; field < fieldsOf<BodyMotion>.size(); ++field) {
         for (std::uint32_t bit = 0; bit < 32; bit += 7) {
             World other = world;
-            other.corruptForTest(5, field, bit);
+            WorldSpoiler::flip(other, 5, field, bit);
             const auto found = firstDifference(world, other);
             ASSERT_TRUE(found);
             EXPECT_EQ(found->body, 5u);
@@ -42,8 +43,8 @@ TEST(Difference, IsNoneBetweenEqualWorldsAndTheLowestBodyWhereThereAreSeveral) {
     World world = worldOf("small");
     World other = world;
     EXPECT_FALSE(firstDifference(world, other));
-    other.corruptForTest(9, 0, 1);
-    other.corruptForTest(4, 5, 1);
+    WorldSpoiler::flip(other, 9, 0, 1);
+    WorldSpoiler::flip(other, 4, 5, 1);
     EXPECT_EQ(firstDifference(world, other)->body, 4u);
     EXPECT_EQ(firstDifference(world, other)->field, "velocity.y");
 }
@@ -81,9 +82,9 @@ TEST(Difference, NamesJointsAndContactsByTheirIds) {
 TEST(Difference, HooksForTestsIgnoreWhatIsNotThere) {
     World world = worldOf("small");
     const std::uint64_t root = world.fullRoot();
-    world.corruptForTest(9999, 0, 0);
-    world.corruptForTest(2, 99, 0);
-    world.corruptForTest(2, 0, 32);
+    WorldSpoiler::flip(world, 9999, 0, 0);
+    WorldSpoiler::flip(world, 2, 99, 0);
+    WorldSpoiler::flip(world, 2, 0, 32);
     EXPECT_EQ(world.fullRoot(), root);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/state/hash.h"
 #include "core/state/snapshot.h"
+#include "tests/core/spoil.h"
 #include "tests/core/support.h"
 
 namespace huestep::test {
@@ -113,7 +114,7 @@ TEST(Roots, KeptForDefinitionsFollowEveryCommandThatChangesOne) {
 TEST(Roots, MotionLeavesPointAtTheBlockOfAChangedBody) {
     World world = worldOf("pyramid:base=20");
     World other = world;
-    other.corruptForTest(150, 2, 3);
+    WorldSpoiler::flip(other, 150, 2, 3);
     const auto a = world.motionLeaves(), b = other.motionLeaves();
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i] != b[i], i == 149 / 64) << i;

@@ -3,8 +3,10 @@
 #include "core/state/snapshot.h"
 #include "core/state/validate.h"
 
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <regex>
 
 #include "core/state/roots.h"
@@ -265,6 +267,31 @@ TEST(Snapshot, ThatContradictsItselfIsRefusedByRecordAndField) {
     expect("player 1 grab", [](WorldState& s) { s.players[1].grab = 66; });
     expect("world stepSeconds", [](WorldState& s) { s.info().stepSeconds = 0.0f; });
     expect("world substeps", [](WorldState& s) { s.info().substeps = 0; });
+    expect("shape 1 vertices", [](WorldState& s) {
+        // Twice around: every corner is a left turn, and edges cross.
+        s.shapes[1].kind = 2 | (5 << 8);
+        for (std::size_t i = 0; i < 5; ++i) {
+            const double turn = 0.8 * std::numbers::pi * static_cast<double>(i);
+            s.shapes[1].vertices[i] = {static_cast<float>(std::cos(turn)),
+                                       static_cast<float>(std::sin(turn))};
+        }
+    });
+    expect("joint 0 anchorA", [](WorldState& s) { s.joints[0].anchorA.x = 2.0e6f; });
+    expect("joint 0 anchorB", [](WorldState& s) { s.joints[0].anchorB.y = -2.0e6f; });
+    expect("joint 1 target", [](WorldState& s) { s.joints[1].target.x = 2.0e6f; });
+    expect("joint 0 lower", [](WorldState& s) {
+        s.joints[0].flags |= JointInfo::limit;
+        s.joints[0].lower = -4.0f;
+    });
+    expect("joint 0 upper", [](WorldState& s) {
+        s.joints[0].flags |= JointInfo::limit;
+        s.joints[0].upper = 4.0f;
+    });
+    expect("world maxCommandsPerTick", [](WorldState& s) { s.info().maxCommandsPerTick = 0; });
+    expect("world maxPlayers", [](WorldState& s) { s.info().maxPlayers = 1u << 20; });
+    expect("world maxSpawned", [](WorldState& s) { s.info().maxSpawned = 1u << 20; });
+    expect("world maxImpulse", [](WorldState& s) { s.info().maxImpulse = 3.0e38f; });
+    expect("world maxForce", [](WorldState& s) { s.info().maxForce = -1.0f; });
     expect("world reserved", [](WorldState& s) { s.info().reserved = 1; });
 }
 
