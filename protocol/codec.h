@@ -55,8 +55,11 @@ inline constexpr std::size_t maxViewBodies = 131'072;
 inline constexpr std::size_t maxViewShapes = 262'144;
 inline constexpr std::size_t maxViewContacts = 262'144;
 inline constexpr std::size_t maxViewJoints = 131'072;
-inline constexpr float maxTicksPerSecond = 1'000.0f;
+inline constexpr float maxTicksPerSecond = 10'000.0f;  ///< a step of `minStepSeconds`
 inline constexpr std::uint32_t maxInputDelay = 600;
+inline constexpr std::uint32_t maxQueuedCommands = 65'536;
+inline constexpr std::uint32_t minQueuedBytes = 16u << 10;  ///< room for the largest command
+inline constexpr std::uint32_t maxQueuedBytes = 16u << 20;
 
 /// Most bytes of a message's payload, by type. A longer one is refused from its header alone.
 ///

@@ -43,11 +43,15 @@ struct Welcome {
   player @1 :UInt32;                  # 0 for a spectator
   epoch @2 :UInt32;                   # counts the server's starts of this session
   tick @3 :UInt64;                    # the next tick the server will close
-  ticksPerSecond @4 :Float32;         # 1/s, (0, 1000]
+  ticksPerSecond @4 :Float32;         # 1/s, (0, 10000]
   inputDelay @5 :UInt32;              # ticks from an intent's arrival to its earliest tick, <= 600
   maxCommandsPerIntent @6 :UInt32;    # [1, 64]
   lastSequence @7 :UInt64;            # of this player, as far as the server has put in order
   resume @8 :Data;                    # 16 bytes: takes the seat up again after a lost connection
+  maxQueuedCommands @9 :UInt32 = 256; # [1, 65536]: of this player, waiting for their tick; one more
+                                      # ends the connection with TooFast
+  maxQueuedBytes @10 :UInt32 = 65536; # [16384, 16777216]: the same in bytes as commands take in an
+                                      # Intent
 }
 
 struct Spawn {

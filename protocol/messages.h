@@ -56,6 +56,10 @@ struct Welcome {
     std::uint32_t maxCommandsPerIntent = 16;
     std::uint64_t lastSequence = 0;  ///< of this player, as far as the server has put in order
     ResumeToken resume{};
+    /// Of this player, waiting for their tick at the server; one more ends the connection with
+    /// TooFast. In commands, and in bytes as `commandBytes` counts them.
+    std::uint32_t maxQueuedCommands = 256;
+    std::uint32_t maxQueuedBytes = 65'536;
     friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 

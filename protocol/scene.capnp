@@ -141,7 +141,7 @@ struct Scene {
     x @2 :Float32;
     y @3 :Float32 = -10;
   }
-  stepSeconds @4 :Float32 = 0.016666668;  # s, length of one tick, (0, 0.1]
+  stepSeconds @4 :Float32 = 0.016666668;  # s, length of one tick, [0.0001, 0.1]
   substeps @5 :UInt32 = 4;            # of a tick, [1, 64]
   sleep @6 :Bool = true;              # whether islands at rest fall asleep
   bodies @7 :List(Body);

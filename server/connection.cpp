@@ -130,6 +130,8 @@ void Connection::enter(Session& session, PlayerId player, Instant now) {
     welcome.inputDelay = m_context.limits.inputDelay;
     welcome.lastSequence = player == 0 ? 0 : session.lastSequence(player);
     if (player != 0) welcome.resume = session.seats().issue(player);
+    welcome.maxQueuedCommands = m_context.limits.queuedPerPlayer;
+    welcome.maxQueuedBytes = static_cast<std::uint32_t>(m_context.limits.queuedBytesPerPlayer);
     send(welcome);
     line("welcome").with("resumed", std::uint64_t{m_hello->resume.has_value()}).to(m_context.log);
     startFeed(now);

@@ -113,6 +113,8 @@ void put(schema::Welcome::Builder to, const Welcome& message) {
     to.setInputDelay(message.inputDelay);
     to.setMaxCommandsPerIntent(message.maxCommandsPerIntent);
     to.setLastSequence(message.lastSequence);
+    to.setMaxQueuedCommands(message.maxQueuedCommands);
+    to.setMaxQueuedBytes(message.maxQueuedBytes);
     to.setResume(dataOf(message.resume.data(), message.resume.size()));
 }
 

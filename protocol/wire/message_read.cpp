@@ -35,6 +35,14 @@ void refuseAbove(Reading& in, const char* field, std::uint64_t value, std::uint6
     in.refuse(field, std::to_string(value) + " is above " + std::to_string(most));
 }
 
+void refuseOutside(Reading& in, const char* field, std::uint64_t value, std::uint64_t least,
+                   std::uint64_t most) {
+    if (value < least) {
+        in.refuse(field, std::to_string(value) + " is below " + std::to_string(least));
+    }
+    refuseAbove(in, field, value, most);
+}
+
 std::vector<Command> readCommands(Reading& in, ::capnp::List<schema::Command>::Reader from,
                                   std::size_t most) {
     const std::size_t count = in.sizeOf("commands", from, most, structBytes<schema::Command>());
@@ -154,17 +162,19 @@ Welcome read(Reading& in, schema::Welcome::Reader from) {
     message.tick = from.getTick();
     message.ticksPerSecond = in.real("ticksPerSecond", from.getTicksPerSecond());
     if (!(message.ticksPerSecond > 0.0f && message.ticksPerSecond <= maxTicksPerSecond)) {
-        in.refuse("ticksPerSecond", "not above 0 and at most 1000");
+        in.refuse("ticksPerSecond", "not above 0 and at most 10000");
     }
     message.inputDelay = from.getInputDelay();
     refuseAbove(in, "inputDelay", message.inputDelay, maxInputDelay);
     message.maxCommandsPerIntent = from.getMaxCommandsPerIntent();
-    refuseAbove(in, "maxCommandsPerIntent", message.maxCommandsPerIntent, maxCommandsPerIntent);
-    if (message.maxCommandsPerIntent == 0) {
-        in.refuse("maxCommandsPerIntent", "0 is below 1");
-    }
+    refuseOutside(in, "maxCommandsPerIntent", message.maxCommandsPerIntent, 1,
+                  maxCommandsPerIntent);
     message.lastSequence = from.getLastSequence();
     message.resume = resumeToken(in, from.getResume());
+    message.maxQueuedCommands = from.getMaxQueuedCommands();
+    refuseOutside(in, "maxQueuedCommands", message.maxQueuedCommands, 1, maxQueuedCommands);
+    message.maxQueuedBytes = from.getMaxQueuedBytes();
+    refuseOutside(in, "maxQueuedBytes", message.maxQueuedBytes, minQueuedBytes, maxQueuedBytes);
     return message;
 }
 

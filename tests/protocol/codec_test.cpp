@@ -271,9 +271,9 @@ TEST(CodecLimits, WelcomeRanges) {
     EXPECT_EQ(answerTo(good), "accepted");
     Welcome bad = good;
     bad.ticksPerSecond = 0.0f;
-    EXPECT_EQ(answerTo(bad), "Welcome.ticksPerSecond: not above 0 and at most 1000");
-    bad.ticksPerSecond = 1000.5f;
-    EXPECT_EQ(answerTo(bad), "Welcome.ticksPerSecond: not above 0 and at most 1000");
+    EXPECT_EQ(answerTo(bad), "Welcome.ticksPerSecond: not above 0 and at most 10000");
+    bad.ticksPerSecond = 10000.5f;
+    EXPECT_EQ(answerTo(bad), "Welcome.ticksPerSecond: not above 0 and at most 10000");
     bad.ticksPerSecond = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(answerTo(bad), "Welcome.ticksPerSecond: not a finite number");
     bad = good;
@@ -284,6 +284,16 @@ TEST(CodecLimits, WelcomeRanges) {
     EXPECT_EQ(answerTo(bad), "Welcome.maxCommandsPerIntent: 0 is below 1");
     bad.maxCommandsPerIntent = maxCommandsPerIntent + 1;
     EXPECT_EQ(answerTo(bad), "Welcome.maxCommandsPerIntent: 65 is above 64");
+    bad = good;
+    bad.maxQueuedCommands = 0;
+    EXPECT_EQ(answerTo(bad), "Welcome.maxQueuedCommands: 0 is below 1");
+    bad.maxQueuedCommands = maxQueuedCommands + 1;
+    EXPECT_EQ(answerTo(bad), "Welcome.maxQueuedCommands: 65537 is above 65536");
+    bad = good;
+    bad.maxQueuedBytes = minQueuedBytes - 1;
+    EXPECT_EQ(answerTo(bad), "Welcome.maxQueuedBytes: 16383 is below 16384");
+    bad.maxQueuedBytes = maxQueuedBytes + 1;
+    EXPECT_EQ(answerTo(bad), "Welcome.maxQueuedBytes: 16777217 is above 16777216");
 }
 
 TEST(CodecLimits, CommandsAnIntentAndAFrame) {

@@ -214,7 +214,10 @@ inline Message randomMessage(Draw& draw, MessageType type) {
                            static_cast<std::uint32_t>(draw.below(maxInputDelay + 1)),
                            static_cast<std::uint32_t>(1 + draw.below(maxCommandsPerIntent)),
                            draw.bits(),
-                           randomToken(draw)};
+                           randomToken(draw),
+                           static_cast<std::uint32_t>(1 + draw.below(maxQueuedCommands)),
+                           static_cast<std::uint32_t>(
+                               minQueuedBytes + draw.below(maxQueuedBytes - minQueuedBytes + 1))};
         case MessageType::Intent: {
             Intent intent{randomCommands(draw, 6), {}};
             if (draw.coin()) intent.checkpoint = Checkpoint{draw.bits(), draw.bits()};

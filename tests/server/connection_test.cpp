@@ -211,16 +211,28 @@ TEST(Connection, HashQueriesThatWaitAreBounded) {
     EXPECT_EQ(peer.bye(), ByeReason::TooFast);
 }
 
-TEST(Connection, MoreQueuedCommandsThanAPlayersShareEndIt) {
+TEST(Connection, AsManyCommandsAsWelcomeSaysMayWaitAndOneMoreEndsIt) {
     Limits limits;
     limits.queuedPerPlayer = 8;
     Desk desk(limits);
     Peer peer(desk);
-    const PlayerId player = peer.join().player;
+    const protocol::Welcome welcome = peer.join();
+    ASSERT_EQ(welcome.maxQueuedCommands, 8u);
+    EXPECT_EQ(welcome.maxQueuedBytes, limits.queuedBytesPerPlayer);
     protocol::Intent intent;
-    for (std::uint64_t s = 1; s <= 9; ++s) intent.commands.push_back({player, s, Release{}});
+    for (std::uint64_t s = 1; s <= 8; ++s) intent.commands.push_back({1, s, Release{}});
     peer.say(intent);
+    EXPECT_EQ(peer.bye(), std::nullopt);
+    peer.say(protocol::Intent{{{1, 9, Release{}}}, std::nullopt});
     EXPECT_EQ(peer.bye(), ByeReason::TooFast);
+}
+
+TEST(Connection, TheShortestStepOfASceneHasAWelcomeThatAClientTakes) {
+    Scene scene = deskScene();
+    scene.stepSeconds = caps::minStepSeconds;
+    Desk desk({}, scene);
+    Peer peer(desk);
+    EXPECT_EQ(peer.join().ticksPerSecond, 10'000.0f);
 }
 
 TEST(Connection, AFullSessionQueueDropsCommandsAndCountsThem) {
