@@ -1,27 +1,19 @@
 #include "client/bot.h"
 
 #include <algorithm>
-#include <array>
-#include <deque>
-#include <fstream>
 #include <optional>
-#include <sstream>
+#include <random>
 #include <utility>
 
 namespace huestep::client {
 
 namespace {
 
-/// SplitMix64: a step of the state, and a mixed word of it.
+/// The standard's engine, whose numbers it fixes; not its distributions, which differ by library.
 class Dice {
  public:
-    explicit Dice(std::uint64_t seed) : m_state(seed) {}
-    std::uint64_t roll() {
-        std::uint64_t z = (m_state += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
+    explicit Dice(std::uint64_t seed) : m_engine(seed) {}
+    std::uint64_t roll() { return m_engine(); }
     /// In [low, high).
     float between(float low, float high) {
         return low + (high - low) * (static_cast<float>(roll() >> 40) * 0x1.0p-24f);
@@ -29,7 +21,7 @@ class Dice {
     bool once(std::uint64_t in) { return roll() % in == 0; }
 
  private:
-    std::uint64_t m_state;
+    std::mt19937_64 m_engine;
 };
 
 class IdleBot : public Bot {

@@ -5,32 +5,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "client/connection.h"
+#include "tests/play_scene.h"
 
 namespace huestep::client {
 namespace {
 
-Scene playScene() {
-    Scene scene;
-    BodyDef ground;
-    ground.shapes.push_back(ShapeDef::box(20.0f, 0.5f));
-    scene.bodies.push_back(ground);
-    for (int i = 0; i < 6; ++i) {
-        BodyDef box;
-        box.type = BodyType::Dynamic;
-        box.position = {static_cast<float>(i), 2.0f};
-        box.shapes.push_back(ShapeDef::box(0.4f, 0.4f));
-        scene.bodies.push_back(box);
-    }
-    PlayerDef players;
-    BodyDef body;
-    body.type = BodyType::Dynamic;
-    body.shapes.push_back(ShapeDef::circle({}, 0.4f));
-    players.body = body;
-    players.spawnPoints = {{0.0f, 6.0f}};
-    scene.players = players;
-    return scene;
-}
+using test::playScene;
 
 /// A bot alone in a world, its commands applied at once.
 struct Alone {
@@ -77,7 +57,7 @@ TEST(WanderBot, PlaysByTheRulesOfTheScene) {
         }
         EXPECT_GT(countOf<ApplyImpulse>(alone.actions), 100u) << "seed " << seed;
         EXPECT_GT(countOf<Grab>(alone.actions) + countOf<Spawn>(alone.actions), 0u);
-        EXPECT_LE(alone.world.bodies().size(), 8u + 4u);
+        EXPECT_LE(alone.world.bodies().size(), 7u + 4u);
     }
 }
 
@@ -190,18 +170,6 @@ TEST(Script, AFileIsReadWhole) {
     std::filesystem::remove(path);
     ASSERT_FALSE(bot.ok());
     EXPECT_EQ(bot.error().message.rfind(path + ":2: ", 0), 0u) << bot.error().message;
-}
-
-TEST(Backoff, DoublesUpToTwoSecondsAndIsSpread) {
-    EXPECT_EQ(backoffMs(0, 0), 0u);
-    EXPECT_EQ(backoffMs(1, 0), 50u);
-    EXPECT_EQ(backoffMs(2, 0), 100u);
-    EXPECT_EQ(backoffMs(4, 0), 400u);
-    for (const std::uint32_t failures : {7u, 11u, 1'000u, 4'000'000'000u}) {
-        EXPECT_EQ(backoffMs(failures, 0), 2'000u);
-        EXPECT_GE(backoffMs(failures, 1'023), 1'500u);
-        EXPECT_LT(backoffMs(failures, 1'023), 1'510u);
-    }
 }
 
 }  // namespace

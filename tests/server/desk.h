@@ -12,31 +12,14 @@
 
 #include "protocol/frame.h"
 #include "server/hub.h"
+#include "tests/play_scene.h"
 
 namespace huestep::server::test {
 
 inline const protocol::Fingerprint deskPrint{11, 22, 33};
 
 inline Scene deskScene() {
-    Scene scene;
-    BodyDef ground;
-    ground.shapes.push_back(ShapeDef::box(20.0f, 0.5f));
-    scene.bodies.push_back(ground);
-    for (int i = 0; i < 5; ++i) {
-        BodyDef box;
-        box.type = BodyType::Dynamic;
-        box.position = {static_cast<float>(i), 2.0f};
-        box.shapes.push_back(ShapeDef::box(0.4f, 0.4f));
-        scene.bodies.push_back(box);
-    }
-    PlayerDef players;
-    BodyDef body;
-    body.type = BodyType::Dynamic;
-    body.shapes.push_back(ShapeDef::circle({}, 0.4f));
-    players.body = body;
-    players.spawnPoints = {{0.0f, 6.0f}};
-    scene.players = players;
-    return scene;
+    return huestep::test::playScene();
 }
 
 inline SessionStart startOf(const Scene& scene, const std::string& name = "play") {
