@@ -93,7 +93,7 @@ class Life {
         if (ticks == m_botTicks) return;
         m_botTicks = ticks;
         for (Action& action : m_config.bot->act({*world, m_replica.player(), ownBody(), ticks})) {
-            m_replica.act(std::move(action), uv_hrtime());
+            static_cast<void>(m_replica.act(std::move(action), uv_hrtime()));
         }
         flush();
     }

@@ -5,6 +5,7 @@
 
 #include "core/state/hash.h"
 #include "protocol/codec.h"
+#include "protocol/frame.h"
 
 namespace huestep::client {
 
@@ -25,7 +26,6 @@ Replica::Replica(ReplicaConfig config) : m_config(std::move(config)) {}
 void Replica::connected(Instant) {
     m_state = State::Greeting;
     m_outgoing.clear();
-    m_unsent.clear();
     m_incoming.reset();
     m_frozen.reset();
     m_bye.reset();
@@ -84,6 +84,8 @@ Status Replica::on(const protocol::Welcome& welcome, Instant) {
     m_token.reset();
     if (welcome.player != 0) m_token = welcome.resume;
     m_maxCommandsPerIntent = std::max(welcome.maxCommandsPerIntent, 1u);
+    m_maxQueuedCommands = welcome.maxQueuedCommands;
+    m_maxQueuedBytes = welcome.maxQueuedBytes;
     m_ticksPerSecond = welcome.ticksPerSecond;
     // The tail of frames, or a snapshot: the server's next message says which.
     m_state = m_world ? State::Following : State::Waiting;
@@ -100,8 +102,7 @@ void Replica::resendPending(std::uint64_t lastSequence) {
     for (Pending& pending : m_pending) {
         if (pending.command.sequence <= lastSequence) continue;
         pending.seenAt.reset();
-        m_unsent.push_back(pending.command);
-        ++m_statistics.commandsResent;
+        if (std::exchange(pending.sent, false)) ++m_statistics.commandsResent;
     }
     m_nextSequence = std::max(m_nextSequence, lastSequence + 1);
     flushIntents();
@@ -125,6 +126,7 @@ Status Replica::on(const protocol::Frame& frame, Instant now) {
     ++m_statistics.ticks;
     noteOwnCommands(frame, now);
     noteCommitted(frame.committed);
+    repeatOldest();
     if (m_world->tick() >= m_lastCheckpoint + m_config.checkpointEvery) {
         m_lastCheckpoint = m_world->tick();
         protocol::Intent intent;
@@ -172,6 +174,7 @@ void Replica::noteOwnCommands(const protocol::Frame& frame, Instant now) {
                          [&](const Pending& p) { return p.command.sequence == command.sequence; });
         if (pending == m_pending.end() || pending->seenAt) continue;
         pending->seenAt = frame.tick;
+        m_movedAt = frame.tick;
         if (std::exchange(pending->counted, true)) continue;
         ++m_statistics.commandsSeen;
         const double seconds = static_cast<double>(now - pending->asked) * 1e-9;
@@ -224,10 +227,10 @@ void Replica::noteCommitted(std::uint64_t committed) {
 // Snapshots --------------------------------------------------------------------------------------
 
 Status Replica::on(const protocol::SnapshotBegin& begin) {
-    if (begin.bytes == 0 || begin.bytes > maxSnapshotBytes) {
+    if (begin.bytes == 0 || begin.bytes > protocol::maxSnapshotBytes) {
         return refuse(ByeReason::BadMessage, "a snapshot of " + std::to_string(begin.bytes) +
                                                  " bytes, at most " +
-                                                 std::to_string(maxSnapshotBytes));
+                                                 std::to_string(protocol::maxSnapshotBytes));
     }
     m_state = State::Waiting;
     m_incoming = Incoming{begin, {}};
@@ -296,7 +299,7 @@ void Replica::adopt(World world) {
         m_statistics.rolledBack += m_world->tick() - world.tick();
     }
     m_world = std::move(world);
-    m_lastCheckpoint = m_world->tick();
+    m_lastCheckpoint = m_movedAt = m_world->tick();
     noteSnapshot();
     ++m_statistics.snapshots;
     m_state = State::Following;
@@ -304,33 +307,70 @@ void Replica::adopt(World world) {
 
 // Own commands -----------------------------------------------------------------------------------
 
-bool Replica::act(Action action, Instant now) {
-    if (m_state != State::Following || m_statistics.player == 0) return false;
-    if (m_pending.size() >= maxPendingCommands) return false;
-    Command command{m_statistics.player, m_nextSequence++, std::move(action)};
-    m_pending.push_back({command, now, std::nullopt});
-    m_unsent.push_back(std::move(command));
+Status Replica::act(Action action, Instant now) {
+    if (m_state != State::Following || m_statistics.player == 0) {
+        return Error{"this client does not play now"};
+    }
+    if (m_pending.size() >= maxPendingCommands) {
+        return Error{std::to_string(m_pending.size()) + " own commands wait for their commit"};
+    }
+    Command command{m_statistics.player, m_nextSequence, std::move(action)};
+    // Whoever decodes it judges it: what the server would end the connection for stays here.
+    const Result<protocol::Message> taken =
+        protocol::readFrame(protocol::encode(protocol::Intent{{command}, std::nullopt}));
+    if (!taken) return Error{"a command that cannot be sent: " + taken.error().message};
+    const std::size_t bytes = protocol::commandBytes(command);
+    if (bytes > m_maxQueuedBytes) {
+        return Error{"a command of " + std::to_string(bytes) + " bytes; the server keeps at most " +
+                     std::to_string(m_maxQueuedBytes)};
+    }
+    ++m_nextSequence;
+    m_pending.push_back({std::move(command), now, bytes, std::nullopt});
     ++m_statistics.commandsSent;
-    return true;
+    return Done{};
 }
 
 void Replica::flushIntents() {
-    // As many to a message as Welcome allows, and as the payload's cap holds.
+    if (m_state != State::Following && m_state != State::Waiting) return;
+    if (m_pending.empty() || m_pending.back().sent) return;
+    // As many to a message as Welcome allows and as the payload's cap holds, and in all no more
+    // than may wait at the server: what no frame has shown may be waiting there. The rest goes out
+    // as frames come.
     const std::size_t room = protocol::maxPayload(protocol::MessageType::Intent) - 128;
     protocol::Intent intent;
     std::size_t bytes = 0;
-    for (Command& command : m_unsent) {
-        const std::size_t size = protocol::commandBytes(command);
+    std::size_t underWay = 0;
+    std::size_t underWayBytes = 0;
+    for (Pending& pending : m_pending) {
+        if (pending.seenAt) continue;
+        underWay += 1;
+        underWayBytes += pending.bytes;
+        if (underWay > m_maxQueuedCommands || underWayBytes > m_maxQueuedBytes) break;
+        if (std::exchange(pending.sent, true)) continue;
         if (intent.commands.size() == m_maxCommandsPerIntent ||
-            (bytes + size > room && !intent.commands.empty())) {
+            (bytes + pending.bytes > room && !intent.commands.empty())) {
             send(std::exchange(intent, {}));
             bytes = 0;
         }
-        bytes += size;
-        intent.commands.push_back(std::move(command));
+        bytes += pending.bytes;
+        intent.commands.push_back(pending.command);
     }
     if (!intent.commands.empty()) send(std::move(intent));
-    m_unsent.clear();
+}
+
+/// A server whose whole queue was full let go of commands without a word, and what follows them
+/// here might wait for ever for their frames. So the oldest is said again now and then; if it waits
+/// at the server, that lets the repetition go.
+void Replica::repeatOldest() {
+    const auto oldest = std::find_if(m_pending.begin(), m_pending.end(),
+                                     [](const Pending& pending) { return !pending.seenAt; });
+    const bool underWay = oldest != m_pending.end() && oldest->sent;
+    const auto patience = static_cast<std::uint64_t>(std::max(m_ticksPerSecond, 1.0f));
+    if (underWay && m_world->tick() < m_movedAt + patience) return;
+    m_movedAt = m_world->tick();
+    if (!underWay) return;
+    send(protocol::Intent{{oldest->command}, std::nullopt});
+    ++m_statistics.commandsResent;
 }
 
 void Replica::leave() {

@@ -7,7 +7,8 @@
 ///  - whatever follows a snapshot of tick T starts with frame T: while one is awaited, frames are
 ///    let go;
 ///  - own commands are kept until a *committed* frame shows them, and sent again after a resume
-///    if the server has not put them in order: each counts once.
+///    if the server has not put them in order: each counts once;
+///  - no more own commands are under way at once than Welcome says may wait at the server.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +27,6 @@ namespace huestep::client {
 /// ns since some fixed moment; an argument, never a clock.
 using Instant = std::uint64_t;
 
-/// Largest snapshot a client takes in.
-inline constexpr std::uint64_t maxSnapshotBytes = 256u << 20;
 /// Own commands kept until committed; more are refused.
 inline constexpr std::size_t maxPendingCommands = 1'024;
 
@@ -76,9 +75,10 @@ class Replica {
     /// Takes one message of the server. A sentence: the connection must end (a Bye is queued).
     Status receive(protocol::Message message, Instant now);
 
-    /// Asks for an action; it becomes a command with the next own sequence. False: not playing,
-    /// or too many commands wait for their commit.
-    bool act(Action action, Instant now);
+    /// Asks for an action; it becomes a command with the next own sequence. A sentence, and
+    /// nothing done: not playing, too many commands wait for their commit, or no Intent may hold
+    /// this one (its size, its lists or its numbers are beyond the protocol's limits).
+    Status act(Action action, Instant now);
 
     /// Leaves for good: the seat is given up.
     void leave();
@@ -109,7 +109,9 @@ class Replica {
     struct Pending {
         Command command;
         Instant asked = 0;
+        std::size_t bytes = 0;                ///< in an Intent
         std::optional<std::uint64_t> seenAt;  ///< tick of the frame that had it, or a later one
+        bool sent = false;                    ///< over this connection or, ordered, an earlier one
         bool counted = false;                 ///< in the statistics
     };
     struct Incoming {
@@ -130,6 +132,7 @@ class Replica {
     void send(protocol::Message message) { m_outgoing.push_back(std::move(message)); }
     void flushIntents();
     void resendPending(std::uint64_t lastSequence);
+    void repeatOldest();
     void diverged(const protocol::Frame& frame);
     void reportDifference(const World& theirs);
     void adopt(World world);
@@ -148,11 +151,13 @@ class Replica {
     std::optional<protocol::Bye> m_bye;
     std::vector<protocol::Message> m_outgoing;
     std::deque<Pending> m_pending;  ///< own commands, sequences rising
-    std::vector<Command> m_unsent;  ///< those for the next Intent
     std::uint64_t m_nextSequence = 1;
     std::uint64_t m_committed = 0;  ///< frames below are on the server's disk
     std::uint64_t m_lastCheckpoint = 0;
+    std::uint64_t m_movedAt = 0;  ///< tick at which own commands last moved on: see `repeatOldest`
     std::uint32_t m_maxCommandsPerIntent = 16;
+    std::uint32_t m_maxQueuedCommands = 0;  ///< at the server, as Welcome said
+    std::uint32_t m_maxQueuedBytes = 0;
     float m_ticksPerSecond = 60.0f;
     std::vector<double> m_latencies;  ///< s, the newest 4,096
     std::size_t m_latencyAt = 0;

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/state/hash.h"
+#include "protocol/codec.h"
+#include "protocol/frame.h"
 #include "tests/core/spoil.h"
 
 namespace huestep::client {
@@ -31,6 +35,8 @@ struct Table {
     Replica replica{ReplicaConfig{"play", Role::Player, {1, 2, 3}, {}, 30}};
     World world = *World::create(smallScene());
     std::uint64_t now = 1'000;
+    std::uint32_t queued = 2'048;  ///< what Welcome says
+    std::uint32_t queuedBytes = 1u << 20;
 
     std::vector<Message> take() { return replica.takeOutgoing(); }
     template <class M>
@@ -41,6 +47,7 @@ struct Table {
         return std::nullopt;
     }
     bool say(Message message) { return replica.receive(std::move(message), now).ok(); }
+    bool act(Action action) { return replica.act(std::move(action), now).ok(); }
 
     void welcome(PlayerId player = 1, std::uint64_t lastSequence = 0, std::uint32_t epoch = 1) {
         replica.connected(now);
@@ -51,6 +58,8 @@ struct Table {
         welcome.tick = world.tick();
         welcome.lastSequence = lastSequence;
         welcome.resume = {9, 9};
+        welcome.maxQueuedCommands = queued;
+        welcome.maxQueuedBytes = queuedBytes;
         EXPECT_TRUE(say(welcome));
     }
     void snapshot(std::size_t chunk = 1'000) {
@@ -166,8 +175,8 @@ TEST(Replica, IfTheServerNoLongerHasTheTickTheBlockOfBodiesIsNamed) {
 TEST(Replica, OwnCommandsHaveRisingSequencesAndAreFoundInFrames) {
     Table table;
     table.enter();
-    EXPECT_TRUE(table.replica.act(ApplyImpulse{3, {1, 0}, {0, 6}}, table.now));
-    EXPECT_TRUE(table.replica.act(Release{}, table.now));
+    EXPECT_TRUE(table.act(ApplyImpulse{3, {1, 0}, {0, 6}}));
+    EXPECT_TRUE(table.act(Release{}));
     const auto intent = Table::find<Intent>(table.take());
     ASSERT_TRUE(intent.has_value());
     ASSERT_EQ(intent->commands.size(), 2u);
@@ -183,7 +192,7 @@ TEST(Replica, OwnCommandsHaveRisingSequencesAndAreFoundInFrames) {
 TEST(Replica, NoMoreCommandsInAnIntentThanWelcomeAllows) {
     Table table;
     table.enter();
-    for (int i = 0; i < 40; ++i) table.replica.act(Release{}, table.now);
+    for (int i = 0; i < 40; ++i) table.act(Release{});
     std::vector<std::size_t> sizes;
     for (const Message& message : table.take()) {
         sizes.push_back(std::get<Intent>(message).commands.size());
@@ -195,20 +204,20 @@ TEST(Replica, CommandsThatWaitForTheirCommitAreBounded) {
     Table table;
     table.enter();
     for (std::size_t i = 0; i < maxPendingCommands; ++i) {
-        EXPECT_TRUE(table.replica.act(Release{}, table.now));
+        EXPECT_TRUE(table.act(Release{}));
     }
-    EXPECT_FALSE(table.replica.act(Release{}, table.now));
+    EXPECT_FALSE(table.act(Release{}));
     const auto intent = Table::find<Intent>(table.take());
     table.say(table.frame(intent->commands));
-    EXPECT_FALSE(table.replica.act(Release{}, table.now)) << "seen is not committed";
+    EXPECT_FALSE(table.act(Release{})) << "seen is not committed";
     table.say(table.frame({}, table.world.tick()));
-    EXPECT_TRUE(table.replica.act(Release{}, table.now));
+    EXPECT_TRUE(table.act(Release{}));
 }
 
 TEST(Replica, AfterAResumeWhatTheServerDoesNotHaveIsSentAgainAndNothingElse) {
     Table table;
     table.enter();
-    for (int i = 0; i < 3; ++i) table.replica.act(Release{}, table.now);
+    for (int i = 0; i < 3; ++i) table.act(Release{});
     const auto intent = Table::find<Intent>(table.take());
     // The server ordered the first two, and committed the first.
     table.say(table.frame({intent->commands[0]}));
@@ -236,7 +245,7 @@ TEST(Replica, AfterAResumeWhatTheServerDoesNotHaveIsSentAgainAndNothingElse) {
 TEST(Replica, CommandsOfFramesThatASnapshotReplacedAreNotWaitedForForEver) {
     Table table;
     table.enter();
-    for (int i = 0; i < 3; ++i) table.replica.act(Release{}, table.now);
+    for (int i = 0; i < 3; ++i) table.act(Release{});
     const auto intent = Table::find<Intent>(table.take());
     table.frame({intent->commands[0], intent->commands[1]});  // never gets here
     table.snapshot();
@@ -253,7 +262,7 @@ TEST(Replica, CommandsOfFramesThatASnapshotReplacedAreNotWaitedForForEver) {
 TEST(Replica, ACommandTheServerLetGoOfIsCountedAsLostOnceALaterOneIsOrdered) {
     Table table;
     table.enter();
-    for (int i = 0; i < 2; ++i) table.replica.act(Release{}, table.now);
+    for (int i = 0; i < 2; ++i) table.act(Release{});
     const auto intent = Table::find<Intent>(table.take());
     table.say(table.frame({intent->commands[1]}));
     table.say(table.frame({}, table.world.tick()));
@@ -265,7 +274,7 @@ TEST(Replica, ACommandTheServerLetGoOfIsCountedAsLostOnceALaterOneIsOrdered) {
 TEST(Replica, AServerThatLostUncommittedTicksGetsThemAgainOnce) {
     Table table;
     table.enter();
-    table.replica.act(Release{}, table.now);
+    table.act(Release{});
     const auto intent = Table::find<Intent>(table.take());
     const World saved = table.world;
     table.say(table.frame(intent->commands));
@@ -308,9 +317,7 @@ TEST(Replica, WhatNoServerSaysEndsTheConnectionWithABye) {
     EXPECT_TRUE(refused([](Table& t) { return t.say(SnapshotChunk{0, {std::byte{1}}}); }));
     EXPECT_TRUE(refused([](Table& t) { return t.say(SnapshotEnd{1}); }));
     EXPECT_TRUE(refused([](Table& t) { return t.say(SnapshotBegin{1, 0, 0}); }));
-    EXPECT_TRUE(refused([](Table& t) {
-        return t.say(SnapshotBegin{1, client::maxSnapshotBytes + 1, 0});
-    }));
+    EXPECT_TRUE(refused([](Table& t) { return t.say(SnapshotBegin{1, maxSnapshotBytes + 1, 0}); }));
     EXPECT_TRUE(refused([](Table& t) {
         t.say(SnapshotBegin{1, 10, 0});
         return t.say(SnapshotChunk{0, std::vector<std::byte>(11)});
@@ -341,18 +348,164 @@ TEST(Replica, TheFirstMessageMustBeAWelcome) {
 }
 
 TEST(Replica, ABrokenSnapshotLeavesTheWorldAsItWas) {
+    Table first;
+    first.enter();
+    const std::vector<std::byte> whole = first.world.save();
+    ASSERT_GT(whole.size(), 500u);
+    for (std::size_t at = 0; at < whole.size(); at += 7) {
+        SCOPED_TRACE("byte " + std::to_string(at));
+        Table table;
+        table.enter();
+        for (int i = 0; i < 5; ++i) table.say(table.frame());
+        const std::uint64_t root = table.replica.world()->fullRoot();
+        std::vector<std::byte> bytes = table.world.save();
+        ASSERT_EQ(bytes.size(), whole.size());
+        bytes[at] ^= std::byte{64};
+        // The sender hashed what it sends; the image's own checksums are what refuses it.
+        EXPECT_TRUE(table.say(SnapshotBegin{table.world.tick(), bytes.size(), hash64(bytes)}));
+        EXPECT_TRUE(table.say(SnapshotChunk{0, bytes}));
+        EXPECT_FALSE(table.say(SnapshotEnd{table.world.tick()}));
+        EXPECT_TRUE(Table::find<Bye>(table.take()).has_value());
+        EXPECT_FALSE(table.replica.following());
+        ASSERT_NE(table.replica.world(), nullptr);
+        EXPECT_EQ(table.replica.world()->fullRoot(), root);
+    }
+}
+
+/// Commands of Intents among the messages, and what they take.
+std::vector<Command> commandsOf(const std::vector<Message>& messages) {
+    std::vector<Command> out;
+    for (const Message& message : messages) {
+        const auto* intent = std::get_if<Intent>(&message);
+        if (intent) out.insert(out.end(), intent->commands.begin(), intent->commands.end());
+    }
+    return out;
+}
+
+/// A spawn of so many bodies, each of eight octagons.
+Spawn octagons(std::size_t bodies) {
+    ShapeDef octagon = ShapeDef::box(1.0f, 1.0f);
+    octagon.vertexCount = 8;
+    octagon.vertices.fill({1.0f, 2.0f});
+    BodyDef body;
+    body.type = BodyType::Dynamic;
+    body.shapes.assign(8, octagon);
+    return Spawn{std::vector<BodyDef>(bodies, body), {}};
+}
+
+TEST(Replica, WhatNoIntentMayHoldIsRefusedWithASentenceAndTakesNoSequence) {
     Table table;
     table.enter();
-    for (int i = 0; i < 5; ++i) table.say(table.frame());
-    const std::uint64_t root = table.replica.world()->fullRoot();
-    std::vector<std::byte> bytes = table.world.save();
-    bytes[bytes.size() / 2] ^= std::byte{64};
-    table.say(SnapshotBegin{table.world.tick(), bytes.size(), hash64(bytes)});
-    table.say(SnapshotChunk{0, bytes});
-    table.say(SnapshotEnd{table.world.tick()});
-    ASSERT_NE(table.replica.world(), nullptr);
-    const bool kept = table.replica.world()->fullRoot() == root;
-    EXPECT_TRUE(kept || table.replica.following()) << "a bit in a value may pass, half a world not";
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<std::pair<Action, std::string>> wrong{
+        {octagons(500), "at most " + std::to_string(maxPayload(MessageType::Intent))},
+        {ApplyImpulse{3, {nan, 0}, {0, 6}}, "not a finite number"},
+    };
+    for (const auto& [action, why] : wrong) {
+        const Status asked = table.replica.act(action, table.now);
+        ASSERT_FALSE(asked.ok()) << why;
+        EXPECT_EQ(asked.error().message.rfind("a command that cannot be sent: Intent", 0), 0u)
+            << asked.error().message;
+        EXPECT_NE(asked.error().message.find(why), std::string::npos) << asked.error().message;
+    }
+    EXPECT_EQ(table.replica.pendingCommands(), 0u);
+    EXPECT_EQ(table.replica.counts().commandsSent, 0u);
+    EXPECT_TRUE(table.act(Release{}));
+    const std::vector<Command> sent = commandsOf(table.take());
+    ASSERT_EQ(sent.size(), 1u);
+    EXPECT_EQ(sent[0].sequence, 1u);
+}
+
+TEST(Replica, EveryIntentItSendsIsOneThatAServerTakes) {
+    Table table;
+    table.enter();
+    std::size_t asked = 0;
+    for (std::size_t bodies = 1; bodies <= 64; ++bodies) {
+        asked += table.act(octagons(bodies));
+        asked += table.act(Release{});
+    }
+    EXPECT_GT(asked, 64u);
+    EXPECT_LT(asked, 128u) << "none was too large for an Intent";
+    const std::vector<Message> out = table.take();
+    EXPECT_EQ(commandsOf(out).size(), asked);
+    for (const Message& message : out) {
+        const Result<Message> read = readFrame(encode(message));
+        ASSERT_TRUE(read.ok()) << read.error().message;
+        EXPECT_EQ(*read, message);
+    }
+}
+
+TEST(Replica, NoMoreCommandsAreUnderWayThanMayWaitAtTheServer) {
+    Table table;
+    table.queued = 10;
+    table.enter();
+    for (int i = 0; i < 25; ++i) EXPECT_TRUE(table.act(Release{}));
+    const std::vector<Command> first = commandsOf(table.take());
+    ASSERT_EQ(first.size(), 10u);
+    EXPECT_TRUE(commandsOf(table.take()).empty()) << "nothing more before a frame shows some";
+    EXPECT_TRUE(table.say(table.frame({first[0], first[1], first[2]})));
+    const std::vector<Command> second = commandsOf(table.take());
+    ASSERT_EQ(second.size(), 3u);
+    EXPECT_EQ(second.front().sequence, 11u);
+    EXPECT_EQ(second.back().sequence, 13u);
+}
+
+TEST(Replica, NoMoreBytesAreUnderWayThanMayWaitAtTheServer) {
+    Table table;
+    table.queuedBytes = 16u << 10;
+    table.enter();
+    for (int i = 0; i < 25; ++i) EXPECT_TRUE(table.act(octagons(1)));
+    std::vector<Command> waiting = commandsOf(table.take());
+    std::size_t sent = waiting.size();
+    EXPECT_LT(sent, 25u);
+    for (int turns = 0; sent < 25 && turns < 25; ++turns) {
+        std::size_t bytes = 0;
+        for (const Command& command : waiting) bytes += commandBytes(command);
+        EXPECT_LE(bytes, table.queuedBytes);
+        EXPECT_GT(bytes + commandBytes(waiting[0]), table.queuedBytes) << "room is left";
+        EXPECT_TRUE(table.say(table.frame({waiting[0]})));
+        waiting.erase(waiting.begin());
+        const std::vector<Command> more = commandsOf(table.take());
+        waiting.insert(waiting.end(), more.begin(), more.end());
+        sent += more.size();
+    }
+    EXPECT_EQ(sent, 25u);
+}
+
+TEST(Replica, AfterAResumeTooNoMoreIsSentAgainThanMayWaitAtTheServer) {
+    Table table;
+    table.queued = 10;
+    table.enter();
+    for (int i = 0; i < 25; ++i) EXPECT_TRUE(table.act(Release{}));
+    EXPECT_EQ(commandsOf(table.take()).size(), 10u);
+    table.replica.disconnected();
+    table.welcome(1, 4);  // the server put four in order, whose frames are to come
+    const std::vector<Command> again = commandsOf(table.take());
+    ASSERT_EQ(again.size(), 6u);
+    EXPECT_EQ(again.front().sequence, 5u);
+    EXPECT_EQ(table.replica.counts().commandsResent, 6u);
+}
+
+TEST(Replica, CommandsThatAFullServerLetGoOfDoNotStopThoseAfterThem) {
+    Table table;
+    table.queued = 4;
+    table.enter();
+    for (int i = 0; i < 8; ++i) EXPECT_TRUE(table.act(Release{}));
+    EXPECT_EQ(commandsOf(table.take()).size(), 4u);  // all let go of
+    std::vector<std::uint64_t> counted;
+    std::vector<Command> heard;
+    for (int tick = 0; tick < 600; ++tick) {
+        EXPECT_TRUE(table.say(table.frame(std::exchange(heard, {}), table.world.tick())));
+        for (const Command& command : commandsOf(table.take())) {
+            if (!counted.empty() && command.sequence <= counted.back()) continue;  // a repetition
+            counted.push_back(command.sequence);
+            heard.push_back(command);
+        }
+    }
+    EXPECT_EQ(table.replica.pendingCommands(), 0u);
+    EXPECT_EQ(counted, (std::vector<std::uint64_t>{1, 5, 6, 7, 8}));
+    EXPECT_EQ(table.replica.counts().commandsLost, 3u);
+    EXPECT_EQ(table.replica.counts().commandsSeen, 5u);
 }
 
 TEST(Replica, ByeAndPingAreAnsweredAsTheyShould) {
