@@ -6,6 +6,33 @@
 
 namespace huestep::client {
 
+/// What lasts as long as the connection, whatever becomes of its sockets.
+struct Connection::Handles {
+    uv_timer_t timer{};  ///< of the next attempt, or of an address that is to answer
+    uv_timer_t beat{};
+    uv_async_t found{};  ///< the lookup's thread wakes the loop by it
+    int open = 3;        ///< the last to close frees this
+
+    Handles(uv_loop_t& loop, Connection* owner) {
+        uv_timer_init(&loop, &timer);
+        uv_timer_init(&loop, &beat);
+        // Cannot fail: what it needs of the system, the loop's own start has opened.
+        uv_async_init(&loop, &found, onFound);
+        timer.data = beat.data = found.data = owner;
+    }
+    void close() {
+        for (uv_handle_t* handle :
+             {reinterpret_cast<uv_handle_t*>(&timer), reinterpret_cast<uv_handle_t*>(&beat),
+              reinterpret_cast<uv_handle_t*>(&found)}) {
+            handle->data = this;
+            uv_close(handle, [](uv_handle_t* closed) {
+                auto* handles = static_cast<Handles*>(closed->data);
+                if (--handles->open == 0) delete handles;
+            });
+        }
+    }
+};
+
 /// A socket that its connection has let go of stays until the server has closed too, or for
 /// `lingerMs`: closing at once could drop a Bye with whatever the server still sends.
 struct Connection::Socket {
@@ -38,10 +65,6 @@ struct Connection::Write {
 namespace {
 
 template <class Handle>
-uv_handle_t* asHandle(Handle* handle) {
-    return reinterpret_cast<uv_handle_t*>(handle);
-}
-template <class Handle>
 uv_stream_t* asStream(Handle* handle) {
     return reinterpret_cast<uv_stream_t*>(handle);
 }
@@ -54,17 +77,14 @@ std::uint64_t backoffMs(std::uint32_t failures, std::uint32_t dice) {
     return full - full / 4 * (dice % 1'024) / 1'024;
 }
 
-Connection::Connection(uv_loop_t& loop, protocol::Address address, Events events)
+Connection::Connection(uv_loop_t& loop, Destination destination, Events events)
     : m_loop(loop),
-      m_address(std::move(address)),
+      m_destination(std::move(destination)),
       m_events(std::move(events)),
-      m_timer(new uv_timer_t) {
-    uv_timer_init(&m_loop, m_timer);
-    m_timer->data = this;
-}
+      m_handles(new Handles(loop, this)) {}
 
 Connection::~Connection() {
-    assert(m_stopped && !m_socket && !m_timer);
+    assert(m_stopped && !m_socket && !m_handles);
 }
 
 void Connection::start() {
@@ -72,31 +92,69 @@ void Connection::start() {
 }
 
 void Connection::attempt() {
-    uv_getaddrinfo_t resolver{};
-    addrinfo hints{};
-    hints.ai_socktype = SOCK_STREAM;
-    const std::string port = std::to_string(m_address.port);
-    // Without a callback libuv resolves at once: this loop has nothing else to do meanwhile.
-    int status =
-        uv_getaddrinfo(&m_loop, &resolver, nullptr, m_address.host.c_str(), port.c_str(), &hints);
-    if (status != 0) return drop(uv_strerror(status));
-    const std::unique_ptr<addrinfo, void (*)(addrinfo*)> found(resolver.addrinfo, uv_freeaddrinfo);
+    m_lookup.emplace(m_destination.resolve, m_destination.address,
+                     [found = &m_handles->found] { uv_async_send(found); });
+}
+
+void Connection::onFound(uv_async_t* async) {
+    Connection& self = *static_cast<Connection*>(async->data);
+    if (!self.m_lookup) return;
+    std::optional<Result<SocketAddresses>> found = self.m_lookup->take();
+    if (!found) return;
+    self.m_lookup.reset();
+    if (!*found) return self.drop(found->error().message);
+    self.m_addresses = std::move(**found);
+    self.m_nextAddress = 0;
+    self.tryNext("the name has no address");
+}
+
+/// A name may have addresses at which nobody listens, such as ::1 beside 127.0.0.1: each has its
+/// turn before the attempt has failed.
+void Connection::tryNext(const std::string& why) {
+    letGo();
+    if (m_nextAddress == m_addresses.size()) return drop(why);
+    const sockaddr_storage& address = m_addresses[m_nextAddress++];
     m_socket = new Socket;
     m_socket->owner = this;
     m_socket->tcp.data = m_socket->linger.data = m_socket;
     m_socket->request.data = m_socket;
     uv_tcp_init(&m_loop, &m_socket->tcp);
     uv_timer_init(&m_loop, &m_socket->linger);
-    status = uv_tcp_connect(&m_socket->request, &m_socket->tcp, found->ai_addr, onConnect);
-    if (status != 0) drop(uv_strerror(status));
+    const int status = uv_tcp_connect(&m_socket->request, &m_socket->tcp,
+                                      reinterpret_cast<const sockaddr*>(&address), onConnect);
+    if (status != 0) return tryNext(uv_strerror(status));
+    uv_timer_start(&m_handles->timer, onTimer, answerMs, 0);
+}
+
+void Connection::onTimer(uv_timer_t* timer) {
+    Connection& self = *static_cast<Connection*>(timer->data);
+    if (self.m_socket) return self.tryNext("no answer");
+    self.attempt();
+}
+
+void Connection::onBeat(uv_timer_t* timer) {
+    Connection& self = *static_cast<Connection*>(timer->data);
+    switch (self.m_pulse.beat()) {
+        case Pulse::Beat::Quiet:
+            return;
+        case Pulse::Beat::Ask:
+            return self.send(protocol::Ping{++self.m_pings, false});
+        case Pulse::Beat::Silent:
+            return self.drop("the server is silent");
+    }
 }
 
 void Connection::onConnect(uv_connect_t* request, int status) {
     auto& socket = *static_cast<Socket*>(request->data);
     if (!socket.owner) return;
     Connection& self = *socket.owner;
-    if (status != 0) return self.drop(uv_strerror(status));
+    if (status != 0) return self.tryNext(uv_strerror(status));
     socket.connected = true;
+    uv_timer_stop(&self.m_handles->timer);
+    const std::uint64_t beat = std::max<std::uint64_t>(
+        1, self.m_destination.silenceMs / static_cast<std::uint64_t>(Pulse::silentAfter));
+    self.m_pulse = Pulse{};
+    uv_timer_start(&self.m_handles->beat, onBeat, beat, beat);
     self.m_splitter.emplace();
     uv_tcp_nodelay(&socket.tcp, 1);
     uv_read_start(asStream(&socket.tcp), onAlloc, onRead);
@@ -128,6 +186,7 @@ void Connection::onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buff
 void Connection::received(std::span<const std::byte> bytes) {
     m_bytesIn += bytes.size();
     m_failures = 0;
+    m_pulse.heard();
     std::vector<protocol::Message> messages;
     const Status fed = m_splitter->feed(bytes, messages);
     const Socket* before = m_socket;
@@ -159,6 +218,7 @@ void Connection::send(const protocol::Message& message) {
 }
 
 void Connection::drop(const std::string& why) {
+    m_lookup.reset();
     letGo();
     ++m_failures;
     m_events.lost(why);
@@ -167,6 +227,8 @@ void Connection::drop(const std::string& why) {
 
 void Connection::letGo() {
     if (!m_socket) return;
+    uv_timer_stop(&m_handles->timer);
+    uv_timer_stop(&m_handles->beat);
     Socket* socket = std::exchange(m_socket, nullptr);
     socket->owner = nullptr;
     if (!socket->connected ||
@@ -180,18 +242,15 @@ void Connection::letGo() {
 
 void Connection::attemptLater() {
     const auto dice = static_cast<std::uint32_t>(uv_hrtime() >> 8);
-    uv_timer_start(
-        m_timer, [](uv_timer_t* timer) { static_cast<Connection*>(timer->data)->attempt(); },
-        backoffMs(m_failures, dice), 0);
+    uv_timer_start(&m_handles->timer, onTimer, backoffMs(m_failures, dice), 0);
 }
 
 void Connection::stop() {
     if (m_stopped) return;
     m_stopped = true;
+    m_lookup.reset();
     letGo();
-    uv_timer_t* timer = std::exchange(m_timer, nullptr);
-    uv_close(asHandle(timer),
-             [](uv_handle_t* handle) { delete reinterpret_cast<uv_timer_t*>(handle); });
+    std::exchange(m_handles, nullptr)->close();
 }
 
 }  // namespace huestep::client

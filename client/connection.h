@@ -1,4 +1,8 @@
-/// A TCP connection to a server, made anew when it breaks. Thread rule: the loop's thread.
+/// A TCP connection to a server, made anew when it breaks or falls silent. Thread rule: the loop's
+/// thread.
+///
+/// libuv writes without MSG_NOSIGNAL, so the process must ignore SIGPIPE: a server that closes
+/// while bytes are sent to it would end the process. `main` does it, as signals are the process's.
 #pragma once
 
 #include <uv.h>
@@ -10,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "client/lookup.h"
+#include "client/pulse.h"
 #include "core/result.h"
 #include "protocol/address.h"
 #include "protocol/frame.h"
@@ -23,6 +29,15 @@ std::uint64_t backoffMs(std::uint32_t failures, std::uint32_t dice);
 /// Most bytes that may wait to be written; a server that does not read so much is given up.
 inline constexpr std::size_t maxUnsentBytes = 1u << 20;
 inline constexpr std::uint64_t lingerMs = 500;
+/// For an address to answer before the name's next one is tried.
+inline constexpr std::uint64_t answerMs = 3'000;
+
+struct Destination {
+    protocol::Address address;
+    /// Without a byte from the server for so long, with Pings in between, the connection is lost.
+    std::uint64_t silenceMs = 10'000;
+    Resolve resolve = askSystem;
+};
 
 class Connection {
  public:
@@ -36,7 +51,7 @@ class Connection {
         std::function<void(const std::string& why)> lost;
     };
 
-    Connection(uv_loop_t& loop, protocol::Address address, Events events);
+    Connection(uv_loop_t& loop, Destination destination, Events events);
     /// After `stop`, and once the loop has run out.
     ~Connection();
     Connection(const Connection&) = delete;
@@ -54,22 +69,32 @@ class Connection {
     [[nodiscard]] std::uint64_t bytesOut() const { return m_bytesOut; }
 
  private:
+    struct Handles;
     struct Socket;
     struct Write;
+    static void onTimer(uv_timer_t* timer);
+    static void onBeat(uv_timer_t* timer);
+    static void onFound(uv_async_t* async);
     static void onConnect(uv_connect_t* request, int status);
     static void onAlloc(uv_handle_t* handle, std::size_t suggested, uv_buf_t* buffer);
     static void onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buffer);
 
     void attempt();
     void attemptLater();
+    void tryNext(const std::string& why);
     void received(std::span<const std::byte> bytes);
     void letGo();
 
     uv_loop_t& m_loop;
-    protocol::Address m_address;
+    Destination m_destination;
     Events m_events;
-    uv_timer_t* m_timer;         ///< of the next attempt, or of the end; frees itself when closed
+    Handles* m_handles;          ///< free themselves when closed
     Socket* m_socket = nullptr;  ///< frees itself when closed
+    std::optional<Lookup> m_lookup;
+    SocketAddresses m_addresses;  ///< of this attempt
+    std::size_t m_nextAddress = 0;
+    Pulse m_pulse;
+    std::uint64_t m_pings = 0;
     std::optional<protocol::FrameSplitter> m_splitter;
     std::uint32_t m_failures = 0;
     bool m_stopped = false;

@@ -16,6 +16,20 @@ namespace {
 constexpr std::uint64_t houseMs = 50;
 constexpr std::uint64_t progressMs = 1'000;
 
+Destination destinationOf(const PlayerConfig& config, protocol::Address address) {
+    Destination out;
+    out.address = std::move(address);
+    out.silenceMs = static_cast<std::uint64_t>(config.silenceSeconds * 1e3);
+    out.resolve = config.resolve;
+    return out;
+}
+
+/// Whether the message brings a client that has no state nearer to it.
+bool isOfState(const protocol::Message& message) {
+    return std::holds_alternative<protocol::SnapshotBegin>(message) ||
+           std::holds_alternative<protocol::SnapshotChunk>(message);
+}
+
 bool isFinal(const protocol::Bye& bye) {
     // A refused token costs the seat, not the game: the next attempt joins anew.
     return !bye.mayResume && bye.reason != protocol::ByeReason::ResumeRefused;
@@ -30,9 +44,13 @@ class Life {
           m_replica(ReplicaConfig{
               m_config.session, m_config.role, m_config.fingerprint, {m_executor.get()}}) {
         if (!m_config.bot) m_config.bot = makeIdleBot();
-        uv_loop_init(&m_loop);
+        const int opened = uv_loop_init(&m_loop);
+        if (opened != 0) {
+            m_failure = std::string("a client cannot start: ") + uv_strerror(opened);
+            return;
+        }
         m_connection = std::make_unique<Connection>(
-            m_loop, std::move(address),
+            m_loop, destinationOf(m_config, std::move(address)),
             Connection::Events{[this] { connected(); },
                                [this](protocol::Message m) { message(std::move(m)); },
                                [this] { idle(); }, [this](const std::string& why) { lost(why); }});
@@ -41,11 +59,14 @@ class Life {
         uv_signal_init(&m_loop, &m_terminate);
         m_house.data = m_interrupt.data = m_terminate.data = this;
     }
-    ~Life() { uv_loop_close(&m_loop); }
+    ~Life() {
+        if (m_connection) uv_loop_close(&m_loop);
+    }
     Life(const Life&) = delete;
     Life& operator=(const Life&) = delete;
 
     Result<Statistics> run() {
+        if (m_failure) return Error{*m_failure};
         m_apartSince = m_progressAt = uv_hrtime();
         uv_timer_start(
             &m_house, [](uv_timer_t* timer) { static_cast<Life*>(timer->data)->house(); }, houseMs,
@@ -54,10 +75,11 @@ class Life {
             const auto onSignal = [](uv_signal_t* handle, int) {
                 static_cast<Life*>(handle->data)->leave();
             };
-            uv_signal_start(&m_interrupt, onSignal, SIGINT);
-            uv_signal_start(&m_terminate, onSignal, SIGTERM);
+            int status = uv_signal_start(&m_interrupt, onSignal, SIGINT);
+            if (status == 0) status = uv_signal_start(&m_terminate, onSignal, SIGTERM);
+            if (status != 0) fail(std::string("signals cannot be caught: ") + uv_strerror(status));
         }
-        m_connection->start();
+        if (!m_ended) m_connection->start();
         uv_run(&m_loop, UV_RUN_DEFAULT);
         if (m_failure) return Error{*m_failure};
         return statistics();
@@ -65,18 +87,21 @@ class Life {
 
  private:
     void connected() {
+        m_isConnected = true;
+        m_stateAt = uv_hrtime();
         m_replica.connected(uv_hrtime());
         flush();
     }
 
     void message(protocol::Message message) {
         const std::uint64_t mismatches = m_replica.counts().mismatches;
+        const bool ofState = isOfState(message);
         const Status taken = m_replica.receive(std::move(message), uv_hrtime());
         flush();
         if (m_replica.counts().mismatches != mismatches) {
             notice("this world differs from the server's; asking for its state");
         }
-        if (m_replica.following()) m_apartSince = 0;
+        noteState(ofState);
         if (!taken) return m_connection->drop(taken.error().message);
         if (!m_replica.bye()) return;
         const protocol::Bye bye = *m_replica.bye();
@@ -93,9 +118,26 @@ class Life {
         if (ticks == m_botTicks) return;
         m_botTicks = ticks;
         for (Action& action : m_config.bot->act({*world, m_replica.player(), ownBody(), ticks})) {
-            static_cast<void>(m_replica.act(std::move(action), uv_hrtime()));
+            const Status asked = m_replica.act(std::move(action), uv_hrtime());
+            if (!asked &&
+                asked.error().message != std::exchange(m_lastRefusal, asked.error().message)) {
+                notice("the bot's action is not taken: " + asked.error().message);
+            }
         }
         flush();
+    }
+
+    /// Waiting for the session's state, too, ends: it is given up when no piece of it came for too
+    /// long. A large one over a slow line may take its time.
+    void noteState(bool ofState) {
+        const Instant now = uv_hrtime();
+        const bool following = m_replica.following();
+        if (following) {
+            m_apartSince = 0;
+            m_toldLoss = false;
+        } else if (ofState || m_apartSince == 0) {
+            m_apartSince = m_stateAt = now;
+        }
     }
 
     [[nodiscard]] BodyId ownBody() const {
@@ -106,9 +148,10 @@ class Life {
     }
 
     void lost(const std::string& why) {
+        m_isConnected = false;
         m_replica.disconnected();
-        if (m_apartSince == 0) {
-            m_apartSince = uv_hrtime();
+        if (m_apartSince == 0) m_apartSince = uv_hrtime();
+        if (m_replica.counts().connections != 0 && !std::exchange(m_toldLoss, true)) {
             notice("connection lost: " + why);
         }
         m_lastWhy = why;
@@ -117,6 +160,11 @@ class Life {
     void house() {
         const Instant now = uv_hrtime();
         if (m_config.stop && m_config.stop->load()) leave();
+        if (m_ended) return;
+        const bool waits = m_isConnected && !m_replica.following();
+        if (waits && static_cast<double>(now - m_stateAt) > m_config.silenceSeconds * 1e9) {
+            m_connection->drop("the server does not send the session's state");
+        }
         const double limit = m_replica.counts().connections == 0 ? m_config.connectSeconds
                                                                  : m_config.reconnectSeconds;
         if (m_apartSince != 0 && static_cast<double>(now - m_apartSince) > limit * 1e9) {
@@ -176,9 +224,13 @@ class Life {
     uv_signal_t m_interrupt{};
     uv_signal_t m_terminate{};
     Instant m_apartSince = 0;  ///< 0: playing
+    Instant m_stateAt = 0;     ///< while apart: the connection, or the last piece of the state
+    bool m_isConnected = false;
+    bool m_toldLoss = false;  ///< since it last played
     Instant m_progressAt = 0;
     std::uint64_t m_botTicks = 0;
     std::string m_lastWhy;
+    std::string m_lastRefusal;
     std::optional<std::string> m_failure;
     bool m_ended = false;
 };

@@ -11,7 +11,8 @@
 ///     exit status 1 if played->mismatches > 0
 ///
 /// `play` blocks; several may run at once, each in a thread of its own (with `handleSignals` in
-/// at most one of them, and `stop` for the others).
+/// at most one of them, and `stop` for the others). The process must ignore SIGPIPE, as `main`
+/// does: a server that goes while bytes are sent to it would end the process.
 #pragma once
 
 #include <atomic>
@@ -20,6 +21,7 @@
 #include <string>
 
 #include "client/bot.h"
+#include "client/lookup.h"
 #include "client/replica.h"
 #include "core/result.h"
 #include "protocol/messages.h"
@@ -35,10 +37,14 @@ struct PlayerConfig {
     std::uint64_t ticks = 0;   ///< frames to follow before leaving; 0: no end
     int threads = 1;           ///< that step this client's world
     bool handleSignals = true;
-    std::atomic<bool>* stop = nullptr;  ///< set it to end within 100 ms
+    std::atomic<bool>* stop = nullptr;  ///< set it to end within 100 ms, whatever is waited for
     /// How long to try: for the first connection, and for each reconnection.
     double connectSeconds = 10.0;
     double reconnectSeconds = 30.0;
+    /// A connection over which nothing comes for so long, or while waiting for the session's state
+    /// nothing of it, is given up and made anew.
+    double silenceSeconds = 10.0;
+    Resolve resolve = askSystem;
     /// Called once a second with the numbers so far; may be empty.
     std::function<void(const Statistics&)> onProgress;
     /// Called for what a person should know: refusals, reconnects, desyncs; may be empty.
