@@ -3,10 +3,18 @@
  *
  * After a loss it waits 0.5 s, then twice as long each time up to 8 s, each wait shortened at
  * random by up to a quarter so that the viewers of a restarted server do not come at one moment.
+ *
+ * A server that lives sends something every few seconds, even while its session stands still. One
+ * from which nothing comes for 10 s is given up: a line that broke without a word says no more.
+ * That time is counted in beats of a timer: a page that slept missed beats as well, and does not
+ * take its own absence for the server's silence.
  */
 
 const firstWaitMs = 500;
 const longestWaitMs = 8000;
+const beatMs = 1000;
+/** Beats without a message, or without an answer to the first word. */
+const silentAfter = 10;
 /** The close code of a server that stops. */
 const goingAway = 1001;
 
@@ -30,6 +38,8 @@ export class Feed {
     /** @type {WebSocket | null} */
     this.socket = null;
     this.timer = 0;
+    this.quietBeats = 0;
+    window.setInterval(() => this.beat(), beatMs);
     window.addEventListener('online', () => this.hurry());
     document.addEventListener('visibilitychange', () => document.hidden || this.hurry());
     this.connect();
@@ -44,17 +54,33 @@ export class Feed {
     const socket = new WebSocket(`${scheme}//${location.host}/view?${query}`, 'huestep-view');
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
+    this.quietBeats = 0;
     let opened = false;
     socket.onopen = () => {
+      if (this.socket !== socket) return;
       opened = true;
+      this.quietBeats = 0;
       this.waitMs = firstWaitMs;
       this.onState('live', 'live');
     };
-    socket.onmessage = (event) => this.onFrame(event.data);
+    socket.onmessage = (event) => {
+      if (this.socket !== socket) return;
+      this.quietBeats = 0;
+      this.onFrame(event.data);
+    };
     socket.onclose = (event) => {
       if (this.socket !== socket) return;
       this.lost(event.code === goingAway ? 'the server stopped' : 'connection lost', opened);
     };
+  }
+
+  beat() {
+    if (!this.socket) return;
+    this.quietBeats += 1;
+    if (this.quietBeats < silentAfter) return;
+    // The browser would wait for the other side's word before it tells of the end.
+    this.socket.close(4001, 'silence');
+    this.lost('the server is silent', true);
   }
 
   /** Ends the connection because of what came over it; it is tried again like any other loss. */
@@ -81,7 +107,8 @@ export class Feed {
   /** A WebSocket does not say why it was refused; the page's own address does. */
   async whyRefused() {
     try {
-      const reply = await fetch(location.href, { method: 'HEAD' });
+      const signal = AbortSignal.timeout(beatMs * silentAfter);
+      const reply = await fetch(location.href, { method: 'HEAD', signal });
       if (reply.status === 404) return 'the server has no such session';
       if (reply.status === 429) return 'the server asks to wait';
       return 'the server takes no more viewers';

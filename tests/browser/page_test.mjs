@@ -219,6 +219,23 @@ test('the page comes back when its server does', async () => {
   }
 });
 
+test('a server that falls silent is given up, and found again when it speaks', () =>
+  withServer({ pile: 'pyramid:base=4' }, async (server) => {
+    const page = await openPage(browser, server.url);
+    await until(page, (h) => h.tick > 30);
+    server.sleep();
+    let sentence = '';
+    try {
+      await until(page, (h) => h.state === 'waiting');
+      sentence = await page.textContent('#state');
+    } finally {
+      server.wake();
+    }
+    assert.match(sentence, /^the server is silent, again in \d+ s/);
+    const { tick } = await state(page);
+    await until(page, (h) => h.state === 'live' && h.tick > tick);
+  }));
+
 test('several sessions are listed, and unknown ones named as such', () =>
   withServer({ one: 'pyramid:base=4', two: 'sandbox' }, async (server) => {
     const page = await openPage(browser, server.url);

@@ -87,6 +87,9 @@ export async function startServer(sessions, where = {}) {
           bots.push(new Program('join', address, '--session', session, '--bot', 'wander'));
         }
       },
+      /** Holds the server still, its connections open, until `wake`. */
+      sleep: () => program.child.kill('SIGSTOP'),
+      wake: () => program.child.kill('SIGCONT'),
       /** The server's exit status; all its bots are gone too. */
       async stop() {
         await Promise.all(bots.map((bot) => bot.stop()));
