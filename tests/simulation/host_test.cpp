@@ -14,6 +14,7 @@
 #include "client/player.h"
 #include "protocol/address.h"
 #include "protocol/journal.h"
+#include "relay.h"
 #include "simulation.h"
 
 #if defined(__SANITIZE_THREAD__)
@@ -147,6 +148,41 @@ TEST(Host, APlayerComesBackToItsSeatAfterARestart) {
     EXPECT_EQ(result->mismatches, 0u);
     EXPECT_EQ(result->committedLost, 0u);
     EXPECT_EQ(result->player, 1u);
+}
+
+TEST(Host, APlayerWhoseLineFallsSilentComesBackToItsSeat) {
+    Folder folder;
+    Running running(configFor(folder));
+    Relay relay(protocol::parseAddress(running.host->address(), false)->port);
+    std::atomic<bool> stop{false};
+    std::atomic<std::uint64_t> seen{0};
+    Result<client::Statistics> result = Error{"not run"};
+    std::thread player([&] {
+        client::PlayerConfig config = playerFor(relay.address(), 5, 0);
+        config.stop = &stop;
+        config.silenceSeconds = 1.0;
+        config.onProgress = [&](const client::Statistics& now) { seen = now.ticks; };
+        result = client::play(std::move(config));
+    });
+    const auto waitFor = [](auto condition) {
+        for (int i = 0; i < 4'000 && !condition(); ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        return condition();
+    };
+    EXPECT_TRUE(waitFor([&] { return seen >= 30; }));
+    relay.fallSilent();
+    EXPECT_TRUE(waitFor([&] { return relay.connections() >= 2; })) << "it waits for ever";
+    const std::uint64_t before = seen;
+    EXPECT_TRUE(waitFor([&] { return seen >= before + 30; }));
+    stop = true;
+    player.join();
+    ASSERT_TRUE(result.ok()) << result.error().message;
+    EXPECT_GE(result->connections, 2u);
+    EXPECT_EQ(result->resumes + 1, result->connections);
+    EXPECT_EQ(result->player, 1u);
+    EXPECT_EQ(result->mismatches, 0u);
+    EXPECT_EQ(result->committedLost, 0u);
 }
 
 TEST(Host, RefusesToServeWithoutBeingToldThatAnyoneMayJoin) {
