@@ -87,8 +87,7 @@ class Life {
 
  private:
     void connected() {
-        m_isConnected = true;
-        m_stateAt = uv_hrtime();
+        m_stateAt = 0;
         m_replica.connected(uv_hrtime());
         flush();
     }
@@ -96,12 +95,13 @@ class Life {
     void message(protocol::Message message) {
         const std::uint64_t mismatches = m_replica.counts().mismatches;
         const bool ofState = isOfState(message);
+        const bool welcome = std::holds_alternative<protocol::Welcome>(message);
         const Status taken = m_replica.receive(std::move(message), uv_hrtime());
         flush();
         if (m_replica.counts().mismatches != mismatches) {
             notice("this world differs from the server's; asking for its state");
         }
-        noteState(ofState);
+        noteState(ofState, welcome);
         if (!taken) return m_connection->drop(taken.error().message);
         if (!m_replica.bye()) return;
         const protocol::Bye bye = *m_replica.bye();
@@ -129,7 +129,7 @@ class Life {
 
     /// Waiting for the session's state, too, ends: it is given up when no piece of it came for too
     /// long. A large one over a slow line may take its time.
-    void noteState(bool ofState) {
+    void noteState(bool ofState, bool welcome) {
         const Instant now = uv_hrtime();
         const bool following = m_replica.following();
         if (following) {
@@ -137,6 +137,8 @@ class Life {
             m_toldLoss = false;
         } else if (ofState || m_apartSince == 0) {
             m_apartSince = m_stateAt = now;
+        } else if (welcome) {
+            m_stateAt = now;
         }
     }
 
@@ -148,7 +150,7 @@ class Life {
     }
 
     void lost(const std::string& why) {
-        m_isConnected = false;
+        m_stateAt = 0;
         m_replica.disconnected();
         if (m_apartSince == 0) m_apartSince = uv_hrtime();
         if (m_replica.counts().connections != 0 && !std::exchange(m_toldLoss, true)) {
@@ -161,7 +163,7 @@ class Life {
         const Instant now = uv_hrtime();
         if (m_config.stop && m_config.stop->load()) leave();
         if (m_ended) return;
-        const bool waits = m_isConnected && !m_replica.following();
+        const bool waits = m_stateAt != 0 && !m_replica.following();
         if (waits && static_cast<double>(now - m_stateAt) > m_config.silenceSeconds * 1e9) {
             m_connection->drop("the server does not send the session's state");
         }
@@ -224,9 +226,8 @@ class Life {
     uv_signal_t m_interrupt{};
     uv_signal_t m_terminate{};
     Instant m_apartSince = 0;  ///< 0: playing
-    Instant m_stateAt = 0;     ///< while apart: the connection, or the last piece of the state
-    bool m_isConnected = false;
-    bool m_toldLoss = false;  ///< since it last played
+    Instant m_stateAt = 0;     ///< of Welcome or, later, of the last piece of the state
+    bool m_toldLoss = false;   ///< since it last played
     Instant m_progressAt = 0;
     std::uint64_t m_botTicks = 0;
     std::string m_lastWhy;

@@ -104,6 +104,9 @@ function take(frame) {
     huestep.badFrames += 1;
     return feed?.reject();
   }
+  // A server whose session stands still repeats its newest frame, as a sign of life.
+  const repeated = view.tick === huestep.tick && view.root === huestep.root && !view.shapes;
+  if (repeated && huestep.received > 0) return;
   if (view.tick > huestep.tick + 1 && huestep.received > 0)
     huestep.missed += view.tick - huestep.tick - 1;
   huestep.received += 1;

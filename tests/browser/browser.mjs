@@ -28,12 +28,13 @@ export const desktop = { width: 1280, height: 800 };
 export const phone = { width: 390, height: 844 };
 
 /**
+ * `prepare` is given the page before it is loaded.
  * @returns a page with `problems`: errors in the console, uncaught exceptions, failed requests
  */
 export async function openPage(
   browser,
   url,
-  { size = desktop, scheme = 'light', touch = false } = {},
+  { size = desktop, scheme = 'light', touch = false, prepare = undefined } = {},
 ) {
   const context = await browser.newContext({
     viewport: size,
@@ -47,6 +48,7 @@ export async function openPage(
   page.on('console', (message) => message.type() === 'error' && page.problems.push(message.text()));
   page.on('pageerror', (error) => page.problems.push(String(error)));
   page.on('requestfailed', (request) => page.problems.push(`failed: ${request.url()}`));
+  await prepare?.(page);
   await page.goto(url);
   return page;
 }

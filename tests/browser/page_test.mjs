@@ -236,6 +236,45 @@ test('a server that falls silent is given up, and found again when it speaks', (
     await until(page, (h) => h.state === 'live' && h.tick > tick);
   }));
 
+test('a session that stands still is no silence, and its repeated frames are counted once', () =>
+  withServer({ pile: 'pyramid:base=4' }, async (server) => {
+    let still = false;
+    let repeats = 0;
+    const prepare = (page) =>
+      page.routeWebSocket(/\/view\?/, (toPage) => {
+        const toServer = toPage.connectToServer();
+        let newest = null;
+        toServer.onMessage((frame) => {
+          if (still) return;
+          newest = frame;
+          toPage.send(frame);
+        });
+        const timer = setInterval(() => {
+          if (!still || !newest) return;
+          repeats += 1;
+          toPage.send(newest);
+        }, 2000);
+        timer.unref(); // the page's end does not always tell
+        toPage.onClose(() => clearInterval(timer));
+      });
+    const page = await openPage(browser, server.url, { prepare });
+    await until(page, (h) => h.tick > 30);
+    still = true;
+    await eventually('standing still', async () => {
+      return (await page.textContent('#state')) === 'standing still';
+    });
+    const before = await state(page);
+    await eventually('repeats for longer than silence may last', () => repeats >= 7);
+    const now = await state(page);
+    assert.equal(await page.textContent('#state'), 'standing still');
+    assert.equal(now.losses, 0);
+    assert.equal(now.received, before.received);
+    still = false;
+    await until(page, (h) => h.tick > before.tick);
+    assert.equal((await state(page)).losses, 0);
+    await page.context().close();
+  }));
+
 test('several sessions are listed, and unknown ones named as such', () =>
   withServer({ one: 'pyramid:base=4', two: 'sandbox' }, async (server) => {
     const page = await openPage(browser, server.url);
