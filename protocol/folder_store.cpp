@@ -45,6 +45,7 @@ class FolderStore final : public LogStore {
         : m_path(std::move(path)), m_folder(std::move(folder)) {}
 
     Result<std::vector<std::string>> list() override;
+    Result<std::vector<std::string>> everyFile();
     Result<std::vector<std::byte>> read(const std::string& name) override;
     Status create(const std::string& name) override;
     Status append(const std::string& name, std::span<const std::byte> bytes) override;
@@ -63,6 +64,7 @@ class FolderStore final : public LogStore {
     Status writeTemporary(const std::string& temporary, std::span<const std::byte> bytes) const;
     Status syncFolder(const std::string& name) const;
     Status openForAppending(const std::string& name);
+    Status removeTemporaries();
 
     std::string m_path;
     Descriptor m_folder;
@@ -103,6 +105,14 @@ Status FolderStore::syncFolder(const std::string& name) const {
 }
 
 Result<std::vector<std::string>> FolderStore::list() {
+    Result<std::vector<std::string>> names = everyFile();
+    if (names) {
+        std::erase_if(*names, [](const auto& name) { return name.ends_with(temporarySuffix); });
+    }
+    return names;
+}
+
+Result<std::vector<std::string>> FolderStore::everyFile() {
     const int copy = ::openat(m_folder.number(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     DIR* folder = copy < 0 ? nullptr : ::fdopendir(copy);
     if (folder == nullptr) {
@@ -118,9 +128,7 @@ Result<std::vector<std::string>> FolderStore::list() {
         const bool regular =
             ::fstatat(m_folder.number(), name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 &&
             S_ISREG(info.st_mode);
-        if (regular && isPlainFileName(name) && !name.ends_with(temporarySuffix)) {
-            names.push_back(name);
-        }
+        if (regular && isPlainFileName(name)) names.push_back(name);
         errno = 0;
     }
     const bool complete = errno == 0;
@@ -218,9 +226,43 @@ Status FolderStore::remove(const std::string& name) {
 }
 
 Status FolderStore::lockForWriting() {
-    if (::flock(m_folder.number(), LOCK_EX | LOCK_NB) == 0) return Done{};
+    if (::flock(m_folder.number(), LOCK_EX | LOCK_NB) == 0) return removeTemporaries();
     if (errno == EWOULDBLOCK) return Error{m_path + ": is being written by another server"};
     return failed("", "lock");
+}
+
+/// What a `replace` left that never came to its end. Nobody else is in one: the folder is locked.
+Status FolderStore::removeTemporaries() {
+    const Result<std::vector<std::string>> names = everyFile();
+    if (!names) return names.error();
+    for (const std::string& name : *names) {
+        if (!name.ends_with(temporarySuffix)) continue;
+        if (Status removed = remove(name); !removed) return removed;
+    }
+    return Done{};
+}
+
+/// What was made in the folder is there after a power cut too.
+Status syncAt(const std::filesystem::path& path) {
+    const Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (folder.open() && ::fsync(folder.number()) == 0) return Done{};
+    return Error{path.string() +
+                 ": cannot sync the folder: " + std::generic_category().message(errno)};
+}
+
+/// Makes the folder and those it lies in, each on disk before the next.
+Status makeFolders(const std::filesystem::path& path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return Done{};
+    const std::filesystem::path parent = path.parent_path();
+    if (parent != path) {
+        if (Status made = makeFolders(parent); !made) return made;
+    }
+    std::filesystem::create_directory(path, error);
+    if (error) {
+        return Error{path.string() + ": " + error.message()};
+    }
+    return syncAt(parent);
 }
 
 }  // namespace
@@ -235,15 +277,22 @@ bool isPlainFileName(const std::string& name) {
 
 Result<std::unique_ptr<LogStore>> openFolder(const std::string& path) {
     std::error_code error;
-    std::filesystem::create_directories(path, error);
+    std::filesystem::path whole = std::filesystem::absolute(path, error).lexically_normal();
     if (error) return Error{path + ": cannot create the folder: " + error.message()};
+    if (!whole.has_filename()) whole = whole.parent_path();
+    if (Status made = makeFolders(whole); !made) {
+        return Error{path + ": cannot create the folder: " + made.error().message};
+    }
     Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!folder.open()) {
         return Error{path + ": cannot open: " + std::generic_category().message(errno)};
     }
-    // The folder's own entry must be on disk before anything in it can be said to be.
-    const Descriptor parent(::openat(folder.number(), "..", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (parent.open()) ::fsync(parent.number());
+    // Whoever made it may have died before its entry was on disk. A parent that may not be read
+    // is of somebody else, who made the folder.
+    const std::filesystem::path parent = whole.parent_path();
+    if (::access(parent.c_str(), R_OK) == 0) {
+        if (Status synced = syncAt(parent); !synced) return synced.error();
+    }
     return std::unique_ptr<LogStore>(std::make_unique<FolderStore>(path, std::move(folder)));
 }
 

@@ -29,14 +29,16 @@ class LogStore {
     virtual Status remove(const std::string& name) = 0;
     [[nodiscard]] virtual std::string describe(const std::string& name) const = 0;  ///< path
     /// Keeps every other store of this folder from locking it, in this process or another, until
-    /// this one is destroyed. Reading needs no lock. Locking again what one holds is fine.
+    /// this one is destroyed. Reading needs no lock. Locking again what one holds is fine. Removes
+    /// what an interrupted `replace` left.
     virtual Status lockForWriting() { return Done{}; }
 };
 
 /// Whether it is a plain file name as `LogStore` takes them.
 bool isPlainFileName(const std::string& name);
 
-/// A store in a folder of the file system, created if missing.
+/// A store in a folder of the file system, created if missing, with the folders it lies in; each
+/// is on disk before the next. Names that end in `.tmp` are the store's own and are not listed.
 Result<std::unique_ptr<LogStore>> openFolder(const std::string& path);
 
 }  // namespace huestep::protocol

@@ -2,12 +2,39 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "protocol/journal.h"
 #include "protocol/memory_store.h"
+
+namespace {
+
+/// Paths that `fsync` was called on, if anybody listens; and one where it fails.
+std::vector<std::string>* syncedPaths = nullptr;
+std::string failingPath;
+
+}  // namespace
+
+// Takes the place of the C library's in this program: which folders reach the disk cannot be told
+// otherwise without pulling a plug.
+extern "C" int fsync(int file) {
+    std::array<char, 4096> path{};
+    const std::string link = "/proc/self/fd/" + std::to_string(file);
+    const ssize_t length = ::readlink(link.c_str(), path.data(), path.size() - 1);
+    if (syncedPaths != nullptr && length > 0) syncedPaths->emplace_back(path.data());
+    if (!failingPath.empty() && failingPath == path.data()) {
+        errno = EIO;
+        return -1;
+    }
+    return static_cast<int>(::syscall(SYS_fsync, file));
+}
 
 namespace huestep::protocol {
 namespace {
@@ -118,6 +145,43 @@ TEST(LogStore, OneStoreAtATimeMayWrite) {
     EXPECT_EQ(reasonOf((*second)->lockForWriting()), "done");
 }
 
+/// Listens to `fsync` while it lives.
+struct Listening {
+    Listening() { syncedPaths = &paths; }
+    ~Listening() {
+        syncedPaths = nullptr;
+        failingPath.clear();
+    }
+    std::vector<std::string> paths;
+    [[nodiscard]] bool heard(const std::string& path) const {
+        return std::find(paths.begin(), paths.end(), path) != paths.end();
+    }
+};
+
+TEST(LogStore, EveryFolderOnTheWayIsOnDiskBeforeAnythingIsInIt) {
+    const Folder folder;
+    Listening listening;
+    ASSERT_TRUE(openFolder(folder.path() + "/a/b/c/").ok());
+    EXPECT_TRUE(listening.heard(folder.path())) << "holds a";
+    EXPECT_TRUE(listening.heard(folder.path() + "/a")) << "holds b";
+    EXPECT_TRUE(listening.heard(folder.path() + "/a/b")) << "holds c";
+    listening.paths.clear();
+    ASSERT_TRUE(openFolder(folder.path() + "/a/b/c").ok());
+    EXPECT_TRUE(listening.heard(folder.path() + "/a/b")) << "its maker may have died";
+}
+
+TEST(LogStore, AFolderThatDoesNotReachTheDiskIsRefused) {
+    const Folder folder;
+    Listening listening;
+    failingPath = folder.path() + "/a";
+    const auto store = openFolder(folder.path() + "/a/b");
+    ASSERT_FALSE(store.ok());
+    EXPECT_EQ(store.error().message, folder.path() +
+                                         "/a/b: cannot create the folder: " + folder.path() +
+                                         "/a: cannot sync the folder: Input/output error");
+    EXPECT_FALSE(openFolder(folder.path() + "/a/b").ok()) << "and not taken for made";
+}
+
 TEST(LogStore, AFolderThatCannotBeMadeIsNamed) {
     const Folder folder;
     std::ofstream(fs::path(folder.path()) / "file") << "x";
@@ -126,7 +190,7 @@ TEST(LogStore, AFolderThatCannotBeMadeIsNamed) {
     EXPECT_EQ(store.error().message.rfind(folder.path() + "/file/inside: cannot ", 0), 0u);
 }
 
-TEST(LogStore, AJournalInAFolderReadsBackAndLeftoversOfAReplaceAreIgnored) {
+TEST(LogStore, AJournalInAFolderReadsBackAndLeftoversOfAReplaceAreRemoved) {
     const Folder folder;
     const JournalIdentity identity{"s", {}, 1};
     for (std::uint64_t start = 0; start < 3; ++start) {
@@ -136,6 +200,7 @@ TEST(LogStore, AJournalInAFolderReadsBackAndLeftoversOfAReplaceAreIgnored) {
         ASSERT_EQ(contents->nextTick, start);
         auto writer = JournalWriter::open(**store, identity, *contents, start);
         ASSERT_TRUE(writer.ok()) << writer.error().message;
+        EXPECT_FALSE(fs::exists(fs::path(folder.path()) / "segment-000000000009.log.tmp"));
         const std::vector<JournalEntry> batch{{1, Frame{start, {}, {}, start, 0}}};
         ASSERT_TRUE(writer->append(batch).ok());
         ASSERT_TRUE(writer->writeSnapshot(start, bytesOf("world")).ok());
