@@ -4,14 +4,16 @@
 /// digits. Other files are left alone. A segment starts with {magic, version, epoch, fingerprint,
 /// session, first tick, chain hash so far}; each record is {magic, length, tick, epoch, type, start
 /// of its batch, XXH3 of payload, hash of this header}, a payload and the chain hash. A payload is
-/// an encoded Frame, or a Checkpoint with the full root. The chain hash of a record covers all
+/// an encoded Frame, or a FullRoot. The chain hash of a record covers all
 /// before it. Layouts: journal_format.h.
 ///
 /// What a crash may leave and what it may not: a batch is written and synced before the next one
 /// starts, so only the last batch of the newest segment can be torn. It shows as a file that ends
 /// before its last record does, or as a block of 512 bytes that reads as zeros since it never
-/// reached the disk. Everything else that is wrong, a flipped bit in the very last record too, is
-/// corruption and is refused: nobody can say what else the disk lost.
+/// reached the disk, where its record is wrong. Everything else that is wrong, a flipped bit in the
+/// very last record too, is corruption and is refused: nobody can say what else the disk lost. One
+/// case cannot be told: if the payload of the last record holds a whole block of zeros as written
+/// (a spawn of many default bodies does), a flipped bit in that payload passes for a torn record.
 #pragma once
 
 #include <cstddef>
@@ -35,10 +37,16 @@ struct JournalIdentity {
     std::uint32_t epoch = 0;
 };
 
+/// The hash of everything in a world after a tick.
+struct FullRoot {
+    std::uint64_t tick = 0;
+    std::uint64_t root = 0;
+    friend bool operator==(const FullRoot&, const FullRoot&) = default;
+};
+
 struct JournalEntry {
     std::uint32_t epoch = 0;  ///< read: of its segment; written: the writer's own is taken
-    /// A frame of the session, or the full root of the world after a tick.
-    std::variant<Frame, Checkpoint> content;
+    std::variant<Frame, FullRoot> content;
 };
 
 /// What reading a journal from its start found.
@@ -67,6 +75,9 @@ Result<JournalContents> readJournal(LogStore& store, std::uint64_t fromTick = 0)
 /// The bytes of the snapshot of a tick, checked against its name and checksums. The sentence of a
 /// failure names file and offset.
 Result<std::vector<std::byte>> readSnapshot(LogStore& store, std::uint64_t tick);
+
+/// Name of the file that holds the snapshot of a tick.
+std::string snapshotFile(std::uint64_t tick);
 
 /// The ticks of the snapshots a folder holds, ascending, whether or not they read back.
 Result<std::vector<std::uint64_t>> snapshotTicks(LogStore& store);

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<char, 8> segmentMagic{'H', 'S', 'T', 'E', 'P', 'L', 'O', 'G'};
 constexpr std::uint32_t segmentVersion = 1;
 constexpr std::uint32_t recordMagic = 0x43455248;  // "HREC"
-constexpr std::size_t checkpointBytes = 16;
+constexpr std::size_t fullRootBytes = 16;
 constexpr std::size_t nameOffset = 56;
 
 std::string numbered(const char* format, std::uint64_t tick) {
@@ -54,10 +54,10 @@ std::uint64_t hashWith(std::span<const std::byte> bytes, std::uint64_t number) {
 
 std::vector<std::byte> payloadOf(const JournalEntry& entry) {
     if (const auto* frame = std::get_if<Frame>(&entry.content)) return encode(*frame);
-    const auto& checkpoint = std::get<Checkpoint>(entry.content);
-    std::vector<std::byte> bytes(checkpointBytes);
-    store(std::span(bytes), 0, checkpoint.tick);
-    store(std::span(bytes), 8, checkpoint.motionRoot);
+    const auto& full = std::get<FullRoot>(entry.content);
+    std::vector<std::byte> bytes(fullRootBytes);
+    store(std::span(bytes), 0, full.tick);
+    store(std::span(bytes), 8, full.root);
     return bytes;
 }
 
@@ -154,9 +154,8 @@ void write(const JournalEntry& entry, std::uint32_t epoch, std::uint64_t batchSt
     store(to, 4, static_cast<std::uint32_t>(payload.size()));
     store(to, 8, tickOf(entry));
     store(to, 16, epoch);
-    store(
-        to, 20,
-        std::holds_alternative<Frame>(entry.content) ? RecordType::Frame : RecordType::Checkpoint);
+    store(to, 20,
+          std::holds_alternative<Frame>(entry.content) ? RecordType::Frame : RecordType::FullRoot);
     store(to, 24, batchStart);
     store(to, 32, hash64(payload));
     const std::uint64_t headerHash = hashWith(to.first(40), seed);
@@ -186,11 +185,10 @@ std::optional<RecordHeader> readRecordHeader(std::span<const std::byte> bytes, s
 }
 
 Result<JournalEntry> readEntry(const RecordHeader& header, std::span<const std::byte> payload) {
-    if (header.type == RecordType::Checkpoint && payload.size() == checkpointBytes) {
-        const Checkpoint checkpoint{load<std::uint64_t>(payload, 0),
-                                    load<std::uint64_t>(payload, 8)};
-        if (checkpoint.tick != header.tick) return Error{"the checkpoint is of another tick"};
-        return JournalEntry{header.epoch, checkpoint};
+    if (header.type == RecordType::FullRoot && payload.size() == fullRootBytes) {
+        const FullRoot full{load<std::uint64_t>(payload, 0), load<std::uint64_t>(payload, 8)};
+        if (full.tick != header.tick) return Error{"the full root is of another tick"};
+        return JournalEntry{header.epoch, full};
     }
     if (header.type != RecordType::Frame) {
         return Error{"a record of type " + std::to_string(static_cast<std::uint32_t>(header.type)) +

@@ -5,7 +5,7 @@
 ///     8  u32  version, 1                   4  u32  payload bytes, a multiple of 8
 ///    12  u32  epoch                        8  u64  tick
 ///    16  u64  fingerprint: self-test      16  u32  epoch
-///    24  u64  fingerprint: schema         20  u32  type: 1 Frame, 2 Checkpoint
+///    24  u64  fingerprint: schema         20  u32  type: 1 Frame, 2 FullRoot
 ///    32  u32  fingerprint: scene          24  u64  offset of the first record of its batch
 ///    36  u32  bytes of the session name   32  u64  XXH3 of the payload
 ///    40  u64  first tick                  40  u64  XXH3 of bytes 0 to 39 and the segment's seed
@@ -45,7 +45,7 @@ struct SegmentHeader {
     std::uint64_t chain = 0;
 };
 
-enum class RecordType : std::uint32_t { Frame = 1, Checkpoint = 2 };
+enum class RecordType : std::uint32_t { Frame = 1, FullRoot = 2 };
 
 struct RecordHeader {
     std::uint32_t payloadBytes = 0;

@@ -15,7 +15,9 @@ namespace {
 struct Damage {
     std::string reason;
     bool cutShort = false;  ///< the file ends before the record does
-    bool hashed = false;    ///< the bytes are what was written, so no crash explains it
+    // Bytes of the file of which some are not what was written; none: no crash explains it.
+    std::uint64_t from = 0;
+    std::uint64_t end = 0;
 };
 
 /// Walks the records of one segment.
@@ -32,8 +34,12 @@ struct SegmentWalk {
     Status inOrder(const RecordHeader& record);
 };
 
-Error wrong(Damage& damage, std::string reason, bool cutShort = false, bool hashed = false) {
-    damage = {std::move(reason), cutShort, hashed};
+Error cutShort(Damage& damage, std::string reason) {
+    damage = {std::move(reason), true, 0, 0};
+    return Error{damage.reason};
+}
+Error wrong(Damage& damage, std::string reason, std::uint64_t from = 0, std::size_t bytes = 0) {
+    damage = {std::move(reason), false, from, from + bytes};
     return Error{damage.reason};
 }
 
@@ -41,28 +47,31 @@ Error wrong(Damage& damage, std::string reason, bool cutShort = false, bool hash
 Result<RecordHeader> SegmentWalk::next(Damage& damage) {
     const auto rest = bytes.subspan(offset);
     if (rest.size() < journal::recordHeaderBytes) {
-        return wrong(damage, "the file ends within a record's header", true);
+        return cutShort(damage, "the file ends within a record's header");
     }
     const auto header = journal::readRecordHeader(rest, seed);
-    if (!header) return wrong(damage, "the record's header is not what was written");
+    if (!header) {
+        return wrong(damage, "the record's header is not what was written", offset,
+                     journal::recordHeaderBytes);
+    }
     if (header->recordBytes() > rest.size()) {
-        return wrong(
-            damage,
-            "the file ends within a record of " + std::to_string(header->recordBytes()) + " bytes",
-            true);
+        return cutShort(damage, "the file ends within a record of " +
+                                    std::to_string(header->recordBytes()) + " bytes");
     }
     const auto payload = rest.subspan(journal::recordHeaderBytes, header->payloadBytes);
     if (hash64(payload) != header->payloadHash) {
-        return wrong(damage, "the record's payload (" + std::to_string(payload.size()) +
-                                 " bytes) is not what was written");
+        return wrong(damage,
+                     "the record's payload (" + std::to_string(payload.size()) +
+                         " bytes) is not what was written",
+                     offset + journal::recordHeaderBytes, payload.size());
     }
     const std::uint64_t expected = journal::nextChain(chain, header->headerHash);
-    if (load<std::uint64_t>(rest, journal::recordHeaderBytes + payload.size()) != expected) {
-        return wrong(damage, "the record does not continue the chain of those before it");
+    const std::size_t trailer = journal::recordHeaderBytes + payload.size();
+    if (load<std::uint64_t>(rest, trailer) != expected) {
+        return wrong(damage, "the record does not continue the chain of those before it",
+                     offset + trailer, journal::recordTrailerBytes);
     }
-    if (Status order = inOrder(*header); !order) {
-        return wrong(damage, order.error().message, false, true);
-    }
+    if (Status order = inOrder(*header); !order) return wrong(damage, order.error().message);
     return *header;
 }
 
@@ -79,16 +88,17 @@ Status SegmentWalk::inOrder(const RecordHeader& record) {
     return Done{};
 }
 
-/// Whether a block of the file from `from` on reads as zeros: it never reached the disk.
-bool hasLostSector(std::span<const std::byte> bytes, std::uint64_t from) {
-    while (from < bytes.size()) {
-        const std::uint64_t end = std::min<std::uint64_t>(
-            bytes.size(), (from / journal::sectorBytes + 1) * journal::sectorBytes);
+/// Whether a block of the file that the damage touches reads as zeros, as far as the record at
+/// `record` and what follows it have a part in it: it never reached the disk.
+bool hasLostSector(std::span<const std::byte> bytes, std::uint64_t record, const Damage& damage) {
+    constexpr std::uint64_t block = journal::sectorBytes;
+    for (std::uint64_t at = damage.from / block * block; at < damage.end; at += block) {
+        const std::uint64_t from = std::max(at, record);
+        const std::uint64_t end = std::min<std::uint64_t>(bytes.size(), at + block);
         const auto part = bytes.subspan(from, end - from);
         if (std::all_of(part.begin(), part.end(), [](std::byte b) { return b == std::byte{0}; })) {
             return true;
         }
-        from = end;
     }
     return false;
 }
@@ -109,9 +119,8 @@ bool hasLaterBatch(const SegmentWalk& walk, std::uint64_t from) {
 
 /// Whether an interrupted append explains what is wrong with the record the walk stands at.
 bool tornThere(const SegmentWalk& walk, const Damage& damage) {
-    if (damage.hashed) return false;
     if (damage.cutShort) return true;
-    return hasLostSector(walk.bytes, walk.offset) && !hasLaterBatch(walk, walk.offset);
+    return hasLostSector(walk.bytes, walk.offset, damage) && !hasLaterBatch(walk, walk.offset);
 }
 
 Error refusal(const LogStore& store, const std::string& name, std::uint64_t offset,
@@ -213,6 +222,10 @@ std::vector<std::string> segmentsFrom(const std::vector<std::string>& names,
 }
 
 }  // namespace
+
+std::string snapshotFile(std::uint64_t tick) {
+    return journal::snapshotName(tick);
+}
 
 Result<std::vector<std::uint64_t>> snapshotTicks(LogStore& store) {
     const Result<std::vector<std::string>> names = store.list();

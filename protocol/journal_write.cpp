@@ -30,11 +30,16 @@ Result<JournalWriter> JournalWriter::open(LogStore& store, JournalIdentity ident
                      std::to_string(contents.nextTick) + " is due, not " +
                      std::to_string(nextTick)};
     }
+    // Before a newer segment exists: in an older one a torn record is corruption. What was read may
+    // never have reached the disk, if the writer died between a write and its sync; whoever goes on
+    // from it takes it for committed, so it is synced first.
     if (contents.tornBytes > 0) {
-        // Before a newer segment exists: in an older one a torn record is corruption.
-        Status cut = store.truncate(contents.segment, contents.segmentBytes);
-        if (cut) cut = store.sync(contents.segment);
+        const Status cut = store.truncate(contents.segment, contents.segmentBytes);
         if (!cut) return cut.error();
+    }
+    if (!empty) {
+        const Status synced = store.sync(contents.segment);
+        if (!synced) return synced.error();
     }
     JournalWriter writer(store, std::move(identity));
     writer.m_chain = contents.chain;
@@ -70,7 +75,7 @@ Status JournalWriter::append(std::span<const JournalEntry> batch) {
     std::uint64_t chain = m_chain;
     for (const JournalEntry& entry : batch) {
         const auto* frame = std::get_if<Frame>(&entry.content);
-        const std::uint64_t own = frame ? frame->tick : std::get<Checkpoint>(entry.content).tick;
+        const std::uint64_t own = frame ? frame->tick : std::get<FullRoot>(entry.content).tick;
         if (frame ? own != tick : own > tick) {
             return Error{m_store->describe(m_segment) + ": an entry of tick " +
                          std::to_string(own) + " cannot follow, tick " + std::to_string(tick) +

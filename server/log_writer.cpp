@@ -7,19 +7,19 @@ namespace huestep::server {
 
 namespace {
 
-/// A snapshot that cannot be restored to the root its checkpoint names must not become the base of
+/// A snapshot that cannot be restored to the root recorded with it must not become the base of
 /// a restart.
 Status verify(const ClosedTick& closed) {
     const std::string which = "snapshot of tick " + std::to_string(closed.snapshot->tick);
     const Result<World> restored = World::restore(closed.snapshot->bytes);
     if (!restored) return Error{which + ": " + restored.error().message};
     for (const protocol::JournalEntry& entry : closed.entries) {
-        const auto* check = std::get_if<protocol::Checkpoint>(&entry.content);
-        if (!check || check->tick != restored->tick()) continue;
-        if (check->motionRoot == restored->fullRoot()) return Done{};
+        const auto* full = std::get_if<protocol::FullRoot>(&entry.content);
+        if (!full || full->tick != restored->tick()) continue;
+        if (full->root == restored->fullRoot()) return Done{};
         return Error{which + ": restored, its root is not the world's"};
     }
-    return Error{which + ": has no checkpoint beside it"};
+    return Error{which + ": no full root is recorded with it"};
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ Result<World> baseWorld(LogStore& store, const JournalContents& contents, const 
         if (!bytes) return bytes.error();
         world = World::restore(*bytes);
         if (!world) {
-            return Error{"snapshot of tick " + std::to_string(*contents.snapshotTick) + ": " +
-                         world.error().message};
+            const std::string file = protocol::snapshotFile(*contents.snapshotTick);
+            return Error{store.describe(file) + ": " + world.error().message};
         }
     } else {
         world = World::create(scene);
@@ -96,11 +96,11 @@ std::string differs(const std::string& session, const char* what, std::uint64_t 
 Status replayTail(const RecoveryRequest& request, JournalContents& contents, World& world,
                   std::vector<protocol::Frame>& tail) {
     for (protocol::JournalEntry& entry : contents.entries) {
-        if (const auto* check = std::get_if<protocol::Checkpoint>(&entry.content)) {
-            if (check->tick != world.tick()) continue;
+        if (const auto* full = std::get_if<protocol::FullRoot>(&entry.content)) {
+            if (full->tick != world.tick()) continue;
             const std::uint64_t root = world.fullRoot();
-            if (root == check->motionRoot) continue;
-            return Error{differs(request.name, "full root", check->tick, check->motionRoot, root)};
+            if (root == full->root) continue;
+            return Error{differs(request.name, "full root", full->tick, full->root, root)};
         }
         auto& frame = std::get<protocol::Frame>(entry.content);
         if (frame.tick < world.tick()) continue;

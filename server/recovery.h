@@ -31,9 +31,8 @@ struct RecoveryRequest {
     StepResources resources;
 };
 
-/// Locks the folder, reads, replays and checks: every frame's `previousRoot` and every checkpoint's
-/// full root must be what this build computes. The sentence names the file, or the tick that
-/// differs.
+/// Locks the folder, reads, replays and checks: every frame's `previousRoot` and every full root
+/// must be what this build computes. The sentence names the file, or the tick that differs.
 Result<RecoveredSession> recoverSession(protocol::LogStore& store, const RecoveryRequest& request);
 
 /// Whether a session may be called so: 1 to 64 of [a-z0-9_-].

@@ -111,7 +111,7 @@ ClosedTick Session::finalRecord() const {
     ClosedTick out;
     const SharedSnapshot newest = m_keyframes.newest();
     out.snapshot = newest && newest->tick == tick() ? newest : takeSnapshot(m_world);
-    out.entries.push_back({m_epoch, protocol::Checkpoint{tick(), m_world.fullRoot()}});
+    out.entries.push_back({m_epoch, protocol::FullRoot{tick(), m_world.fullRoot()}});
     out.commits = tick();
     return out;
 }

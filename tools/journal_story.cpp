@@ -66,9 +66,8 @@ Status takeEntries(const std::string& folder, const protocol::JournalContents& c
                    std::uint64_t first, Story& story) {
     story.end = first;
     for (const protocol::JournalEntry& entry : contents.entries) {
-        if (const auto* checkpoint = std::get_if<protocol::Checkpoint>(&entry.content)) {
-            if (checkpoint->tick > first)
-                story.fullRoots[checkpoint->tick] = checkpoint->motionRoot;
+        if (const auto* full = std::get_if<protocol::FullRoot>(&entry.content)) {
+            if (full->tick > first) story.fullRoots[full->tick] = full->root;
             continue;
         }
         const auto& frame = std::get<protocol::Frame>(entry.content);

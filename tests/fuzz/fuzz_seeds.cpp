@@ -73,7 +73,7 @@ void saveJournals(const fs::path& folder) {
         Frame first = *frame;
         first.tick = 0;
         const std::vector<JournalEntry> one{{1, first}};
-        const std::vector<JournalEntry> two{{1, Frame{1, {}, {}, 5, 1}}, {1, Checkpoint{2, 6}}};
+        const std::vector<JournalEntry> two{{1, Frame{1, {}, {}, 5, 1}}, {1, FullRoot{2, 6}}};
         if (!writer->append(one) || !writer->append(two)) return;
     }
     if (!writer->writeSnapshot(0, std::vector<std::byte>(5'000, std::byte{9}))) return;

@@ -50,7 +50,7 @@ const std::vector<std::byte>& goodSegment() {
             const Command push{7, tick + 1, ApplyImpulse{3, {1.0f, 2.0f}, {}}};
             const std::vector<JournalEntry> batch{{4, Frame{tick, {push}, {}, tick, tick}},
                                                   {4, Frame{tick + 1, {}, {8}, tick, tick}},
-                                                  {4, Checkpoint{tick + 2, 99}}};
+                                                  {4, FullRoot{tick + 2, 99}}};
             require(writer->append(batch).ok(), "a disk in memory works");
         }
         return store.bytes(segment);

@@ -58,7 +58,7 @@ TEST(JournalFormat, ASegmentHeaderIsLaidOutAsItsHeaderSays) {
 TEST(JournalFormat, ARecordIsLaidOutAsItsHeaderSays) {
     std::vector<std::byte> out;
     std::uint64_t chain = 5;
-    write(JournalEntry{0, Checkpoint{7, 8}}, 9, 128, 6, chain, out);
+    write(JournalEntry{0, FullRoot{7, 8}}, 9, 128, 6, chain, out);
     ASSERT_EQ(out.size(), recordHeaderBytes + 16 + recordTrailerBytes);
     const std::span<const std::byte> from(out);
     EXPECT_EQ(0, std::memcmp(out.data(), "HREC", 4));
@@ -93,7 +93,7 @@ std::vector<JournalEntry> sampleEntries() {
     }
     std::get<Frame>(entries[0].content).tick = 0;
     entries.push_back({2, Frame{1, {}, {3}, 77, 1}});
-    entries.push_back({2, Checkpoint{2, 0xabcdef}});
+    entries.push_back({2, FullRoot{2, 0xabcdef}});
     return entries;
 }
 

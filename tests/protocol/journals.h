@@ -21,8 +21,8 @@ inline const std::string firstSegment = "segment-000000000000.log";
 inline JournalEntry frameOf(std::uint64_t tick, Draw& draw) {
     return {1, Frame{tick, samples::randomCommands(draw, 2), {}, draw.bits(), tick / 2}};
 }
-inline JournalEntry checkpointOf(std::uint64_t tick) {
-    return {1, Checkpoint{tick, tick * 7}};
+inline JournalEntry fullRootOf(std::uint64_t tick) {
+    return {1, FullRoot{tick, tick * 7}};
 }
 
 inline bool same(const JournalEntry& a, const JournalEntry& b) {
@@ -63,7 +63,7 @@ inline std::vector<JournalEntry> fill(LogStore& store, std::size_t batches, std:
     for (std::size_t i = 0; i < batches; ++i) {
         std::vector<JournalEntry> batch;
         for (std::size_t k = 1 + draw.below(3); k > 0; --k) batch.push_back(frameOf(tick++, draw));
-        if (draw.coin()) batch.push_back(checkpointOf(tick));
+        if (draw.coin()) batch.push_back(fullRootOf(tick));
         const Status status = writer.append(batch);
         EXPECT_TRUE(status.ok()) << (status ? "" : status.error().message);
         all.insert(all.end(), batch.begin(), batch.end());

@@ -265,7 +265,7 @@ TEST(LogWriter, ASnapshotThatDoesNotRestoreToItsRootIsNotWritten) {
     ASSERT_TRUE(life.open().ok());
     life.play(5);
     ClosedTick record = life.session->finalRecord();
-    std::get<protocol::Checkpoint>(record.entries.back().content).motionRoot ^= 1;
+    std::get<protocol::FullRoot>(record.entries.back().content).root ^= 1;
     std::string warning;
     ASSERT_TRUE(commitBatch(*life.writer, {&record, 1}, warning).ok());
     EXPECT_NE(warning, "");

@@ -108,9 +108,9 @@ TEST(Session, ASnapshotAndTheFullRootGoToTheJournalAtIntervals) {
         EXPECT_EQ(closed.newSegment, tick % 20 == 0);
         ASSERT_EQ(closed.snapshot != nullptr, tick % 10 == 0);
         if (!closed.snapshot) continue;
-        const auto& check = std::get<protocol::Checkpoint>(closed.entries.at(1).content);
+        const auto& check = std::get<protocol::FullRoot>(closed.entries.at(1).content);
         EXPECT_EQ(check.tick, tick);
-        EXPECT_EQ(World::restore(closed.snapshot->bytes)->fullRoot(), check.motionRoot);
+        EXPECT_EQ(World::restore(closed.snapshot->bytes)->fullRoot(), check.root);
     }
 }
 
