@@ -24,7 +24,7 @@ constexpr std::size_t control = 4u << 10;
 constexpr std::array<TypeInfo, typeCount> types{{
     {"Hello", 1u << 10},
     {"Welcome", control},
-    {"Intent", 8u << 10},
+    {"Intent", 16u << 10},
     {"Frame", 256u << 10},
     {"SnapshotBegin", control},
     {"SnapshotChunk", 64u << 10},

@@ -64,8 +64,8 @@ inline constexpr std::uint32_t maxQueuedBytes = 16u << 20;
 /// Most bytes of a message's payload, by type. A longer one is refused from its header alone.
 ///
 ///   Hello          1 KiB    sent by a stranger
-///   Intent         8 KiB    64 plain commands take 3 KiB; one spawn of 8 bodies, each with 7
-///                           polygons of 8 vertices, takes 7.3 KiB
+///   Intent         16 KiB   64 plain commands take 3 KiB; the largest spawn that a world takes of
+///                           a player, 8 bodies, each with 8 polygons of 8 vertices, takes 9 KiB
 ///   Frame          256 KiB  all a client may have queued; 4,096 plain commands and 4,096
 ///                           substitutions take 208 KiB. The server budgets by `commandBytes`.
 ///   SnapshotChunk  64 KiB

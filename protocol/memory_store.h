@@ -17,7 +17,7 @@ namespace huestep::protocol {
 ///     disk.crash(seed);         // what was not synced is torn or lost; the disk works again
 ///
 /// Thread rule: one caller at a time. Deterministic: everything random is drawn from a seed.
-class MemoryStore final : public LogStore {
+class MemoryStore : public LogStore {
  public:
     explicit MemoryStore(std::string path = "memory") : m_path(std::move(path)) {}
 

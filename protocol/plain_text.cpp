@@ -1,7 +1,5 @@
 #include "protocol/plain_text.h"
 
-#include <cstddef>
-
 namespace huestep::protocol {
 
 namespace {
@@ -39,6 +37,13 @@ bool isPlainText(std::string_view text) {
         text.remove_prefix(length);
     }
     return true;
+}
+
+std::string cutText(std::string text, std::size_t most) {
+    if (text.size() <= most) return text;
+    while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xc0u) == 0x80u) --most;
+    text.resize(most);
+    return text;
 }
 
 }  // namespace huestep::protocol

@@ -5,20 +5,11 @@
 #include <variant>
 
 #include "protocol/codec.h"
+#include "protocol/plain_text.h"
 
 namespace huestep::server {
 
 using protocol::ByeReason;
-
-namespace {
-
-/// How long an answer may wait for a rebuilt world before something else is sent.
-constexpr Instant rebuildPatience = 2 * second;
-/// How long a client may take to read its Bye.
-constexpr Instant byeTime = 2 * second;
-constexpr std::size_t maxQueries = 4;
-
-}  // namespace
 
 Connection::Connection(ConnectionId id, std::string peer, ConnectionContext& context, Instant now)
     : m_id(id),
@@ -29,7 +20,8 @@ Connection::Connection(ConnectionId id, std::string peer, ConnectionContext& con
       m_heard(now),
       m_drained(now),
       m_messages(context.limits.messagesPerSecond, context.limits.messageBurst, now),
-      m_heavy(context.limits.heavyPerSecond, context.limits.heavyBurst, now) {}
+      m_heavy(context.limits.heavyPerSecond, context.limits.heavyBurst, now),
+      m_notes(context.limits.notesPerSecond, context.limits.noteBurst, now) {}
 
 bool Connection::gate(protocol::MessageType, std::uint32_t bytes, const void* self) {
     const auto* connection = static_cast<const Connection*>(self);
@@ -90,10 +82,11 @@ void Connection::on(const protocol::Hello& hello, Instant now) {
                        " of the protocol, the client version " + std::to_string(hello.version),
                    false, now);
     }
-    if (hello.fingerprint != m_context.fingerprint && hello.role != protocol::Role::Spectator) {
+    // A spectator too: over this protocol whoever watches steps the frames. Views go to the page.
+    if (hello.fingerprint != m_context.fingerprint) {
         return end(ByeReason::FingerprintMismatch,
                    "the client's build does not step the same bits as the server's: it may only "
-                   "watch",
+                   "watch, on the page that the server shows with --web",
                    false, now);
     }
     Session* session = m_context.findSession(hello.session);
@@ -128,6 +121,7 @@ void Connection::enter(Session& session, PlayerId player, Instant now) {
     welcome.tick = session.tick();
     welcome.ticksPerSecond = static_cast<float>(session.ticksPerSecond());
     welcome.inputDelay = m_context.limits.inputDelay;
+    welcome.maxCommandsPerIntent = m_context.limits.commandsPerIntent;
     welcome.lastSequence = player == 0 ? 0 : session.lastSequence(player);
     if (player != 0) welcome.resume = session.seats().issue(player);
     welcome.maxQueuedCommands = m_context.limits.queuedPerPlayer;
@@ -142,19 +136,19 @@ void Connection::startFeed(Instant now) {
     m_resynced = true;
     const std::uint64_t have = m_hello->haveTick;
     const bool here = m_mayHaveTail && have != 0 && m_session->rootAt(have) == m_hello->haveHash;
-    if (!here) return startSnapshot(m_session->snapshotForJoin(have), now);
+    if (!here) return startSnapshot(m_session->snapshotForJoin(have), have, now);
     m_feed = Feed::Frames;
     m_cursor = have;
 }
 
 void Connection::on(protocol::Intent& intent, Instant now) {
-    if (intent.checkpoint) checkCheckpoint(*intent.checkpoint);
+    if (intent.checkpoint) checkCheckpoint(*intent.checkpoint, now);
     if (intent.commands.empty()) return;
     if (m_player == 0) {
         ++m_context.counters.badMessages;
         return end(ByeReason::UnexpectedMessage, "a spectator has no commands", false, now);
     }
-    if (intent.commands.size() > protocol::Welcome{}.maxCommandsPerIntent) {
+    if (intent.commands.size() > m_context.limits.commandsPerIntent) {
         ++m_context.counters.badMessages;
         return end(ByeReason::BadMessage, "more commands in an intent than Welcome allows", false,
                    now);
@@ -176,12 +170,13 @@ void Connection::on(protocol::Intent& intent, Instant now) {
     }
 }
 
-void Connection::checkCheckpoint(const protocol::Checkpoint& checkpoint) {
+void Connection::checkCheckpoint(const protocol::Checkpoint& checkpoint, Instant now) {
     const std::optional<std::uint64_t> mine = m_session->rootAt(checkpoint.tick);
     if (!mine) return;
     ++m_context.counters.checkpointsChecked;
     if (*mine == checkpoint.motionRoot) return;
     ++m_context.counters.checkpointMismatches;
+    if (!m_notes.take(now)) return;
     line("checkpoint_mismatch")
         .with("tick", checkpoint.tick)
         .hex("client", checkpoint.motionRoot)
@@ -206,7 +201,7 @@ void Connection::on(const protocol::SnapshotRequest& request, Instant now) {
 
 void Connection::on(const protocol::HashQuery& query, Instant now) {
     if (!mayCost(now)) return;
-    if (m_queries.size() >= maxQueries) {
+    if (m_queries.size() >= m_context.limits.queriesWaiting) {
         return end(ByeReason::TooFast, "too many hash queries wait", true, now);
     }
     m_queries.emplace_back(query.tick, now);
@@ -256,6 +251,9 @@ void Connection::advance(Instant now) {
     }
     if (m_phase != Phase::Live) return;
     answerQueries(now);
+    if (m_feed == Feed::Snapshot && !m_snapshot) {
+        startSnapshot(m_session->snapshotForJoin(m_snapshotNotBefore), m_snapshotNotBefore, now);
+    }
     checkPace(now);
 }
 
@@ -284,6 +282,7 @@ void Connection::checkPace(Instant now) {
         ++m_context.counters.tooSlow;
         return end(ByeReason::TooSlow, "nothing was read for too long", true, now);
     }
+    if (m_feed == Feed::Snapshot && m_snapshot) return checkSnapshotPace(now);
     if (m_feed != Feed::Frames) return;
     const double behind =
         static_cast<double>(m_session->tick() - m_cursor) / m_session->ticksPerSecond();
@@ -297,7 +296,7 @@ void Connection::checkPace(Instant now) {
         m_resynced = true;
         ++m_context.counters.resyncs;
         line("resync").with("behind_ticks", m_session->tick() - m_cursor).to(m_context.log);
-        return startSnapshot(m_session->snapshotForJoin(m_cursor), now);
+        return startSnapshot(m_session->snapshotForJoin(m_cursor), m_cursor, now);
     }
     if (now > m_behindSince + limits.dropBehind) {
         ++m_context.counters.tooSlow;
@@ -305,18 +304,29 @@ void Connection::checkPace(Instant now) {
     }
 }
 
+/// A reader that takes a byte now and then is never idle, and would hold its snapshot for good.
+void Connection::checkSnapshotPace(Instant now) {
+    const Limits& limits = m_context.limits;
+    if (now <= m_snapshotSince + limits.snapshotGrace) return;
+    const double seconds = static_cast<double>(now - m_snapshotSince - limits.snapshotGrace) * 1e-9;
+    const std::size_t sent = m_snapshotAt - std::min(m_snapshotAt, m_lastUnsent);
+    if (static_cast<double>(sent) >= seconds * limits.snapshotBytesPerSecond) return;
+    ++m_context.counters.tooSlow;
+    end(ByeReason::TooSlow, "the snapshot is read too slowly", true, now);
+}
+
 void Connection::answerQueries(Instant now) {
     Rebuilder& rebuilder = m_session->rebuilder();
     while (!m_queries.empty()) {
         const auto [tick, since] = m_queries.front();
         const Rebuilder::Answer answer = rebuilder.ask(tick);
-        if (answer == Rebuilder::Answer::Coming && now <= since + rebuildPatience) break;
+        if (answer == Rebuilder::Answer::Coming && now <= since + m_context.limits.rebuildPatience)
+            break;
         std::vector<std::uint64_t> leaves;
         if (const World* world = rebuilder.find(tick)) leaves = world->motionLeaves();
-        constexpr std::size_t most = 4'096;
         std::size_t first = 0;
         do {
-            const std::size_t count = std::min(most, leaves.size() - first);
+            const std::size_t count = std::min(protocol::maxLeaves, leaves.size() - first);
             const auto from = leaves.begin() + static_cast<std::ptrdiff_t>(first);
             send(protocol::HashNodes{tick,
                                      {from, from + static_cast<std::ptrdiff_t>(count)},
@@ -327,9 +337,12 @@ void Connection::answerQueries(Instant now) {
     }
     if (m_feed != Feed::Rebuild) return;
     const Rebuilder::Answer answer = rebuilder.ask(m_exactTick);
-    if (answer == Rebuilder::Answer::Coming && now <= m_exactSince + rebuildPatience) return;
+    const Instant until = m_exactSince + m_context.limits.rebuildPatience;
+    if (answer == Rebuilder::Answer::Coming && now <= until) return;
     const World* world = rebuilder.find(m_exactTick);
-    startSnapshot(world ? takeSnapshot(*world) : m_session->snapshotForJoin(m_exactTick), now);
+    SharedSnapshot exact = world ? m_session->snapshotOf(*world) : nullptr;
+    if (!exact) exact = m_session->snapshotForJoin(m_exactTick);
+    startSnapshot(std::move(exact), m_exactTick, now);
 }
 
 // Output -----------------------------------------------------------------------------------------
@@ -341,14 +354,16 @@ void Connection::send(const protocol::Message& message) {
     m_outbox.push_back(std::move(bytes));
 }
 
-void Connection::startSnapshot(SharedSnapshot snapshot, Instant now) {
+void Connection::startSnapshot(SharedSnapshot snapshot, std::uint64_t notBefore, Instant now) {
     m_feed = Feed::Snapshot;
     m_snapshot = std::move(snapshot);
+    m_snapshotNotBefore = notBefore;
+    m_snapshotSince = now;
     m_snapshotAt = 0;
     m_snapshotBegun = false;
     m_behindSince = now;
     m_resynced = true;
-    ++m_context.counters.snapshots;
+    if (m_snapshot) ++m_context.counters.snapshots;
 }
 
 SharedBytes Connection::next(std::size_t unsent, Instant now) {
@@ -378,14 +393,14 @@ SharedBytes Connection::next(std::size_t unsent, Instant now) {
 }
 
 SharedBytes Connection::nextOfSnapshot(Instant now) {
-    constexpr std::size_t chunkBytes = 60'000;
+    if (!m_snapshot) return nullptr;  // it waits for one
     const std::vector<std::byte>& bytes = m_snapshot->bytes;
     protocol::Message message;
     if (!m_snapshotBegun) {
         m_snapshotBegun = true;
         message = protocol::SnapshotBegin{m_snapshot->tick, bytes.size(), m_snapshot->hash};
     } else if (m_snapshotAt < bytes.size()) {
-        const std::size_t count = std::min(chunkBytes, bytes.size() - m_snapshotAt);
+        const std::size_t count = std::min(protocol::maxChunkBytes, bytes.size() - m_snapshotAt);
         const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(m_snapshotAt);
         message = protocol::SnapshotChunk{m_snapshotAt,
                                           {from, from + static_cast<std::ptrdiff_t>(count)}};
@@ -412,7 +427,7 @@ SharedBytes Connection::nextFrame(Instant now) {
         end(ByeReason::TooSlow, "the frames it needs are gone", true, now);
     } else {
         ++m_context.counters.resyncs;
-        startSnapshot(m_session->snapshotForJoin(m_cursor), now);
+        startSnapshot(m_session->snapshotForJoin(m_cursor), m_cursor, now);
     }
     return nullptr;
 }
@@ -430,14 +445,14 @@ void Connection::end(ByeReason reason, std::string text, bool mayResume, Instant
         .with("reason", static_cast<std::uint64_t>(reason))
         .with("text", text)
         .to(m_context.log, reason == ByeReason::ServerStops ? Severity::Info : Severity::Warning);
-    if (text.size() > 256) text.resize(256);
+    text = protocol::cutText(std::move(text), protocol::maxByeText);
     // Whatever was to be said before is moot; the Bye alone goes out.
     m_outbox.clear();
     m_outboxBytes = 0;
     send(protocol::Bye{reason, std::move(text), mayResume});
     leaveSeat(false, now);
     m_phase = Phase::Ending;
-    m_closeBy = now + byeTime;
+    m_closeBy = now + m_context.limits.byeTime;
 }
 
 void Connection::leaveSeat(bool forGood, Instant now) {

@@ -8,7 +8,8 @@
 /// that does not read costs the server nothing but a place in the ring of frames, which all share,
 /// and no message of one client can delay another's. What a slow client meets:
 ///  - behind by `resyncBehind`: it gets a snapshot in place of the frames it missed;
-///  - still behind after `dropBehind`, or not a byte taken for so long: Bye TooSlow, may resume.
+///  - still behind after `dropBehind`, or not a byte taken for so long, or a snapshot read at less
+///    than `snapshotBytesPerSecond`: Bye TooSlow, may resume.
 /// Every byte from outside meets a limit; whatever is wrong ends in a Bye that says so.
 #pragma once
 
@@ -114,12 +115,14 @@ class Connection {
 
     void enter(Session& session, PlayerId player, Instant now);
     void startFeed(Instant now);
-    void startSnapshot(SharedSnapshot snapshot, Instant now);
-    void checkCheckpoint(const protocol::Checkpoint& checkpoint);
+    /// Null: waits for one at or after `notBefore`.
+    void startSnapshot(SharedSnapshot snapshot, std::uint64_t notBefore, Instant now);
+    void checkCheckpoint(const protocol::Checkpoint& checkpoint, Instant now);
     bool mayCost(Instant now);
     void answerQueries(Instant now);
     void checkDeadlines(Instant now);
     void checkPace(Instant now);
+    void checkSnapshotPace(Instant now);
     void leaveSeat(bool forGood, Instant now);
     void send(const protocol::Message& message);
     SharedBytes nextOfSnapshot(Instant now);
@@ -145,6 +148,8 @@ class Connection {
     SharedSnapshot m_snapshot;
     std::size_t m_snapshotAt = 0;
     bool m_snapshotBegun = false;
+    std::uint64_t m_snapshotNotBefore = 0;
+    Instant m_snapshotSince = 0;
     std::uint64_t m_exactTick = 0;
     Instant m_exactSince = 0;
     std::deque<std::pair<std::uint64_t, Instant>> m_queries;  ///< ticks of hash queries, since when
@@ -161,6 +166,7 @@ class Connection {
     Instant m_closeBy = ~Instant{0};
     TokenBucket m_messages;
     TokenBucket m_heavy;
+    TokenBucket m_notes;
     std::uint64_t m_pingNonce = 0;
 };
 

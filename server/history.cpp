@@ -105,7 +105,7 @@ bool Rebuilder::work(const StepResources& with) {
     }
     if (job.world->tick() == job.tick) {
         m_done.push_back(std::move(*job.world));
-        if (m_done.size() > 2) m_done.pop_front();
+        if (m_done.size() > m_mostKept) m_done.pop_front();
         m_waiting.pop_front();
     }
     return true;

@@ -74,13 +74,16 @@ class Keyframes {
 /// ends then compare worlds of the very same tick.
 class Rebuilder {
  public:
-    Rebuilder(const FrameRing& frames, const Keyframes& keyframes, std::uint32_t mostWaiting)
-        : m_frames(frames), m_keyframes(keyframes), m_mostWaiting(mostWaiting) {}
+    Rebuilder(const FrameRing& frames, const Keyframes& keyframes, const Limits& limits)
+        : m_frames(frames),
+          m_keyframes(keyframes),
+          m_mostWaiting(limits.rebuildsWaiting),
+          m_mostKept(limits.rebuiltWorlds) {}
 
     enum class Answer : std::uint8_t { Ready, Coming, Gone };
     /// Asks for the world after `tick` steps. Gone: too old, or too many wait: never mind.
     Answer ask(std::uint64_t tick);
-    /// The rebuilt world, if it was asked for and is done; the newest two are kept.
+    /// The rebuilt world, if it was asked for and is done; the newest ones are kept.
     [[nodiscard]] const World* find(std::uint64_t tick) const;
 
     /// One step of the work that waits. False: none waits.
@@ -94,6 +97,7 @@ class Rebuilder {
     const FrameRing& m_frames;
     const Keyframes& m_keyframes;
     std::uint32_t m_mostWaiting;
+    std::uint32_t m_mostKept;
     std::deque<Job> m_waiting;
     std::deque<World> m_done;
 };

@@ -18,10 +18,6 @@ namespace huestep::server {
 namespace {
 
 constexpr std::uint64_t housekeepingMs = 100;
-/// How long clients may take to read their Bye when the host stops.
-constexpr std::uint64_t farewellMs = 500;
-/// Work that no tick waits for ends so long before the next deadline.
-constexpr Instant spareTime = 2 * millisecond;
 
 Result<ResumeKey> randomKey() {
     ResumeKey key{};
@@ -56,6 +52,7 @@ struct Host::Inside {
     Status addSession(const SessionSpec& spec, Instant now);
     void closeDueTicks();
     void scheduleTicks();
+    [[nodiscard]] Instant nextDeadline() const;
     void takeNews();
     void housekeeping();
     void beginStop();
@@ -67,6 +64,7 @@ struct Host::Inside {
     uv_async_t news{};
     uv_async_t stopper{};
     uv_timer_t ticks{};
+    uv_idle_t late{};  ///< in place of the timer when a tick is due already
     uv_timer_t house{};
     uv_timer_t farewell{};
     uv_signal_t interrupt{};
@@ -92,11 +90,12 @@ void Host::Inside::initHandles() {
     uv_async_init(&loop, &stopper,
                   [](uv_async_t* handle) { static_cast<Inside*>(handle->data)->beginStop(); });
     uv_timer_init(&loop, &ticks);
+    uv_idle_init(&loop, &late);
     uv_timer_init(&loop, &house);
     uv_timer_init(&loop, &farewell);
     uv_signal_init(&loop, &interrupt);
     uv_signal_init(&loop, &terminate);
-    news.data = stopper.data = ticks.data = house.data = farewell.data = this;
+    news.data = stopper.data = ticks.data = late.data = house.data = farewell.data = this;
     interrupt.data = terminate.data = this;
 }
 
@@ -111,8 +110,8 @@ Host::Inside::~Inside() {
     // Its own handles alone: the parts' close in an order of their own while the loop runs out.
     for (void* handle :
          {static_cast<void*>(&news), static_cast<void*>(&stopper), static_cast<void*>(&ticks),
-          static_cast<void*>(&house), static_cast<void*>(&farewell), static_cast<void*>(&interrupt),
-          static_cast<void*>(&terminate)}) {
+          static_cast<void*>(&late), static_cast<void*>(&house), static_cast<void*>(&farewell),
+          static_cast<void*>(&interrupt), static_cast<void*>(&terminate)}) {
         uv_close(static_cast<uv_handle_t*>(handle), nullptr);
     }
     uv_run(&loop, UV_RUN_DEFAULT);
@@ -179,16 +178,30 @@ Status Host::Inside::addSession(const SessionSpec& spec, Instant now) {
 
 void Host::Inside::scheduleTicks() {
     if (stopping || sessions.empty()) return;
-    Instant next = ~Instant{0};
-    for (const ClockedSession& s : sessions) next = std::min(next, s.clock.nextDeadline());
+    const Instant next = nextDeadline();
     const Instant now = uv_hrtime();
+    if (next <= now) {
+        // Once a turn of the loop, which then polls without waiting. A timer of 0 ms would be
+        // called again before anything is read, for as long as the steps exceed their period.
+        uv_idle_start(
+            &late, [](uv_idle_t* handle) { static_cast<Inside*>(handle->data)->closeDueTicks(); });
+        return;
+    }
+    uv_idle_stop(&late);
     // libuv's timers have milliseconds and never fire early: rounding up keeps a tick from being
     // looked for before it is due, and the deadlines themselves keep the remainder from adding up.
-    const std::uint64_t wait = next > now ? (next - now + millisecond - 1) / millisecond : 0;
+    const std::uint64_t wait = (next - now + millisecond - 1) / millisecond;
     uv_update_time(&loop);
     uv_timer_start(
         &ticks, [](uv_timer_t* handle) { static_cast<Inside*>(handle->data)->closeDueTicks(); },
         wait, 0);
+}
+
+/// Of the session that is due first.
+Instant Host::Inside::nextDeadline() const {
+    Instant next = ~Instant{0};
+    for (const ClockedSession& s : sessions) next = std::min(next, s.clock.nextDeadline());
+    return next;
 }
 
 void Host::Inside::closeDueTicks() {
@@ -206,7 +219,7 @@ void Host::Inside::closeDueTicks() {
     }
     // At least one step of it each time, or a busy host would never name a desync.
     for (ClockedSession& s : sessions) {
-        while (hub.work(*s.session) && uv_hrtime() + spareTime < s.clock.nextDeadline()) {
+        while (hub.work(*s.session) && uv_hrtime() + config.limits.spareTime < nextDeadline()) {
         }
     }
     scheduleTicks();
@@ -247,12 +260,13 @@ void Host::Inside::beginStop() {
     sockets.stopListening();
     sockets.flush();
     uv_timer_stop(&ticks);
+    uv_idle_stop(&late);
     uv_signal_stop(&interrupt);
     uv_signal_stop(&terminate);
     for (const auto& part : parts) part->stopping();
     uv_timer_start(
         &farewell, [](uv_timer_t* handle) { static_cast<Inside*>(handle->data)->endStop(); },
-        farewellMs, 0);
+        config.limits.farewellTime / millisecond, 0);
     uv_timer_start(
         &house, [](uv_timer_t* handle) { static_cast<Inside*>(handle->data)->housekeeping(); }, 0,
         10);
@@ -271,6 +285,8 @@ Host::Host(std::unique_ptr<Inside> inside) : m_inside(std::move(inside)) {}
 Host::~Host() = default;
 
 Result<std::unique_ptr<Host>> Host::open(HostConfig config) {
+    // A client that is gone is an error of the write to it, not the end of the process.
+    std::signal(SIGPIPE, SIG_IGN);
     if (!config.log) config.log = logToStandardError();
     auto inside = std::make_unique<Inside>(std::move(config));
     if (Status started = inside->start(); !started) return started.error();

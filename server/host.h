@@ -19,8 +19,6 @@
 /// Thread rule: everything here belongs to the thread that calls `run`, except `stop`.
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -69,6 +67,7 @@ class HostPart {
 class Host {
  public:
     /// Opens or recovers every session, binds the address. Sentences name file or address.
+    /// From then on the process ignores SIGPIPE: a client may go at any time.
     static Result<std::unique_ptr<Host>> open(HostConfig config);
     ~Host();
     Host(const Host&) = delete;

@@ -1,4 +1,5 @@
-/// Every limit of the server in one place. A test meets each of them.
+/// The limits of the server, but those of the page: see `WebLimits`. What a message may hold is
+/// the protocol's, in protocol/codec.h.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +18,14 @@ struct Limits {
     std::uint32_t sessions = 256;
     std::uint32_t connections = 1'024;
     std::uint32_t halfOpen = 64;  ///< connections without a finished Hello
+    int backlog = 128;            ///< connections that the system holds for us to accept
+    Instant farewellTime = 500 * millisecond;  ///< for clients to read their Bye at a stop
+    Instant spareTime = 2 * millisecond;  ///< before a deadline, nothing else is begun any more
 
     // A connection.
     std::size_t helloBytes = 1'024;     ///< largest payload before Welcome
-    std::size_t messageBytes = 8'192;   ///< largest payload after it: an Intent
+    std::size_t messageBytes = 16'384;  ///< largest payload after it: an Intent
+    std::uint32_t commandsPerIntent = 16;
     Instant helloTime = 5 * second;     ///< from accept to a finished Hello
     Instant partialTime = 5 * second;   ///< for the rest of a message begun
     Instant pingEvery = 2 * second;     ///< of silence
@@ -29,12 +34,20 @@ struct Limits {
     double messageBurst = 1'200.0;
     double heavyPerSecond = 1.0;  ///< token bucket of requests that cost work:
     double heavyBurst = 6.0;      ///< snapshots, hash queries, reports
+    double notesPerSecond = 1.0;  ///< token bucket of log lines that a client causes at will
+    double noteBurst = 5.0;
+    std::uint32_t queriesWaiting = 4;      ///< hash queries
+    Instant rebuildPatience = 2 * second;  ///< for a rebuilt world, before something else is sent
+    Instant byeTime = 2 * second;          ///< for a client to read its Bye
 
     // A slow consumer: what lies in the transport for one client, and how far behind it may be.
     std::size_t lowWater = 64u << 10;      ///< no more is handed out while so much is unsent
     std::size_t clientBytes = 256u << 10;  ///< hard: passing it ends the connection
     Instant resyncBehind = 2 * second;     ///< behind by more: a snapshot instead of the tail
-    Instant dropBehind = 10 * second;  ///< behind for longer, or not a byte drained: Bye TooSlow
+    Instant dropBehind = 10 * second;     ///< behind for longer, or not a byte drained: Bye TooSlow
+    Instant snapshotGrace = 10 * second;  ///< from the start of a snapshot, before its pace counts
+    double snapshotBytesPerSecond = 16.0 * 1024.0;  ///< pace that a reader of one must keep
+    int sendBufferBytes = 128 << 10;  ///< the kernel's share of what is unread; small: lag shows
 
     // A session.
     std::uint32_t queuedPerPlayer = 256;  ///< commands waiting, of one player
@@ -54,11 +67,14 @@ struct Limits {
     std::uint32_t keyframeTicks = 60;    ///< from one snapshot in memory to the next
     std::uint32_t keyframes = 4;         ///< snapshots kept in memory
     std::uint32_t freshTicks = 30;       ///< a joiner takes a snapshot no older than this
+    std::uint32_t lentSnapshots = 8;     ///< different ones under way to clients at a time
     std::uint32_t journalSnapshotTicks = 600;
-    std::uint32_t segmentTicks = 36'000;   ///< the journal starts a new file
-    std::uint32_t uncommittedTicks = 600;  ///< the disk is behind by more: the session pauses
-    std::uint32_t rebuildsWaiting = 4;     ///< ticks asked for and not yet rebuilt
-    std::uint32_t catchUpTicks = 4;        ///< late ticks closed at once; the rest is let go
+    std::uint32_t segmentTicks = 36'000;     ///< the journal starts a new file after so many,
+    std::uint64_t segmentBytes = 64u << 20;  ///< or when one has reached this size
+    std::uint32_t uncommittedTicks = 600;    ///< the disk is behind by more: the session pauses
+    std::uint32_t rebuildsWaiting = 4;       ///< ticks asked for and not yet rebuilt
+    std::uint32_t rebuiltWorlds = 2;         ///< kept for those who asked
+    std::uint32_t catchUpTicks = 4;          ///< late ticks closed at once; the rest is let go
 };
 
 }  // namespace huestep::server

@@ -1,5 +1,6 @@
 #include "server/log_writer.h"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -24,13 +25,11 @@ Status verify(const ClosedTick& closed) {
 
 }  // namespace
 
-Status commitBatch(protocol::JournalWriter& writer, std::span<const ClosedTick> batch,
-                   std::string& warning) {
+Status appendBatch(protocol::JournalWriter& writer, std::span<const ClosedTick> batch,
+                   std::uint64_t segmentBytes) {
     std::vector<protocol::JournalEntry> entries;
-    const ClosedTick* snapshot = nullptr;
     for (const ClosedTick& closed : batch) {
         entries.insert(entries.end(), closed.entries.begin(), closed.entries.end());
-        if (closed.snapshot) snapshot = &closed;
         // A new segment begins exactly behind the tick that asked for it.
         if (closed.newSegment) {
             if (Status appended = writer.append(entries); !appended) return appended;
@@ -38,13 +37,23 @@ Status commitBatch(protocol::JournalWriter& writer, std::span<const ClosedTick> 
             if (Status rolled = writer.roll(closed.commits); !rolled) return rolled;
         }
     }
-    if (!entries.empty()) {
-        if (Status appended = writer.append(entries); !appended) return appended;
-    }
-    if (!snapshot) return Done{};
-    Status kept = verify(*snapshot);
-    if (kept) kept = writer.writeSnapshot(snapshot->snapshot->tick, snapshot->snapshot->bytes);
-    if (!kept) warning = kept.error().message;
+    if (Status appended = writer.append(entries); !appended) return appended;
+    if (writer.segmentBytes() < segmentBytes) return Done{};
+    return writer.roll(writer.nextTick());
+}
+
+Status keepSnapshot(protocol::JournalWriter& writer, const ClosedTick& closed) {
+    if (Status verified = verify(closed); !verified) return verified;
+    return writer.writeSnapshot(closed.snapshot->tick, closed.snapshot->bytes);
+}
+
+Status commitBatch(protocol::JournalWriter& writer, std::span<const ClosedTick> batch,
+                   std::string& warning) {
+    if (Status appended = appendBatch(writer, batch); !appended) return appended;
+    const auto newest = std::find_if(batch.rbegin(), batch.rend(),
+                                     [](const ClosedTick& closed) { return closed.snapshot; });
+    if (newest == batch.rend()) return Done{};
+    if (const Status kept = keepSnapshot(writer, *newest); !kept) warning = kept.error().message;
     return Done{};
 }
 
@@ -88,39 +97,61 @@ void LogWriter::run() {
         Work work;
         {
             std::unique_lock lock(m_mutex);
-            m_changed.wait(lock, [this] { return m_ending || !m_waiting.empty(); });
-            if (m_waiting.empty()) return;
+            m_changed.wait(
+                lock, [this] { return m_ending || !m_waiting.empty() || !m_snapshots.empty(); });
+            if (m_waiting.empty() && m_snapshots.empty()) return;
             work = std::exchange(m_waiting, {});
         }
-        std::vector<JournalNews> news = writeAll(work);
-        {
-            const std::lock_guard lock(m_mutex);
-            m_news.insert(m_news.end(), std::make_move_iterator(news.begin()),
-                          std::make_move_iterator(news.end()));
+        if (work.empty()) {
+            keepOneSnapshot();
+        } else {
+            appendAll(work);
         }
-        m_wake();
     }
 }
 
-std::vector<JournalNews> LogWriter::writeAll(const Work& work) {
+LogWriter::Journal* LogWriter::find(const std::string& session) {
+    const std::lock_guard lock(m_mutex);
+    const auto found = m_journals.find(session);
+    return found == m_journals.end() ? nullptr : &found->second;  // a map's places stay put
+}
+
+void LogWriter::publish(std::vector<JournalNews> news) {
+    if (news.empty()) return;
+    {
+        const std::lock_guard lock(m_mutex);
+        m_news.insert(m_news.end(), std::make_move_iterator(news.begin()),
+                      std::make_move_iterator(news.end()));
+    }
+    m_wake();
+}
+
+void LogWriter::appendAll(Work& work) {
     std::vector<JournalNews> out;
-    for (const auto& [session, batch] : work) {
-        Journal* journal = nullptr;
-        {
-            const std::lock_guard lock(m_mutex);
-            const auto found = m_journals.find(session);
-            if (found != m_journals.end()) journal = &found->second;  // a map's places stay put
-        }
+    for (auto& [session, batch] : work) {
+        Journal* journal = find(session);
         if (!journal || journal->failed) continue;
         JournalNews news{session, batch.back().commits, std::nullopt, {}};
-        const Status written = commitBatch(journal->writer, batch, news.warning);
-        if (!written) {
+        if (const Status written = appendBatch(journal->writer, batch); !written) {
             journal->failed = true;
             news.failure = written.error().message;
         }
         out.push_back(std::move(news));
+        for (ClosedTick& closed : batch) {
+            if (closed.snapshot) m_snapshots.insert_or_assign(session, std::move(closed));
+        }
     }
-    return out;
+    publish(std::move(out));
+}
+
+void LogWriter::keepOneSnapshot() {
+    const auto taken = m_snapshots.extract(m_snapshots.begin());
+    const std::string& session = taken.key();
+    const ClosedTick& closed = taken.mapped();
+    Journal* journal = find(session);
+    if (!journal || journal->failed) return;
+    const Status kept = keepSnapshot(journal->writer, closed);
+    if (!kept) publish({{session, closed.commits, std::nullopt, kept.error().message}});
 }
 
 }  // namespace huestep::server

@@ -6,6 +6,13 @@
 
 namespace huestep::server {
 
+namespace {
+
+/// A token has 16 bits for it; the last one goes out again and again.
+constexpr std::uint16_t lastIssue = 0xfffe;
+
+}  // namespace
+
 Seats::Seats(std::string session, std::uint32_t epoch, const ResumeKey& key, const Limits& limits)
     : m_session(std::move(session)), m_epoch(epoch), m_key(key), m_limits(limits) {}
 
@@ -67,6 +74,9 @@ Result<Seats::Resumed> Seats::resume(const protocol::ResumeToken& token, Instant
         thisEpoch && issued > 0 && (claim->issue == issued || claim->issue + 1 == issued);
     const bool carriedOver = !thisEpoch && issued <= 1;
     if (!current && !carriedOver) return Error{"this token was used already"};
+    // Whoever shows the newest token has got it. The one before says that its successor may have
+    // been lost on the way: then that goes out again, or a second loss would cost the seat.
+    seat->second.next = !thisEpoch ? 1 : std::min(claim->issue, lastIssue) + 1;
     seat->second.connected = true;
     seat->second.emptySince = now;
     seat->second.heardAt = m_tick;
@@ -75,7 +85,7 @@ Result<Seats::Resumed> Seats::resume(const protocol::ResumeToken& token, Instant
 
 protocol::ResumeToken Seats::issue(PlayerId player) {
     Seat& seat = m_seats[player];
-    ++seat.issued;
+    seat.issued = static_cast<std::uint16_t>(seat.next);
     return makeToken(m_key, m_session, {player, static_cast<std::uint16_t>(m_epoch), seat.issued});
 }
 

@@ -50,7 +50,8 @@ class Seats {
         bool sameEpoch = false;
     };
     Result<Resumed> resume(const protocol::ResumeToken& token, Instant now);
-    /// A fresh token of a taken seat.
+    /// The token of a taken seat that goes out now: a fresh one, or after a `resume` by the one
+    /// before the newest, the newest again.
     protocol::ResumeToken issue(PlayerId player);
     /// The connection of a seat ended: kept for a while, or given up `forGood`.
     void vacate(PlayerId player, bool forGood, Instant now);
@@ -76,7 +77,8 @@ class Seats {
         bool leaving = false;  ///< its RemovePlayer comes next
         Instant emptySince = 0;
         std::uint64_t heardAt = 0;  ///< tick
-        std::uint16_t issued = 0;   ///< tokens of this epoch
+        std::uint16_t issued = 0;   ///< newest token of this epoch that went out
+        int next = 1;               ///< the token that goes out next
     };
     struct Join {
         PlayerId player = 0;            ///< once its frame is closed

@@ -31,7 +31,7 @@ Session::Session(SessionStart start, const Limits& limits, Instant now)
       m_queue(limits),
       m_frames(limits.recentFrames, limits.recentBytes),
       m_keyframes(limits.keyframes),
-      m_rebuilder(m_frames, m_keyframes, limits.rebuildsWaiting),
+      m_rebuilder(m_frames, m_keyframes, limits),
       m_committed(m_world.tick()) {
     for (protocol::Frame& frame : start.tail) m_frames.push(std::move(frame));
     if (start.base) m_keyframes.push(std::move(start.base));
@@ -87,10 +87,9 @@ std::vector<Command> Session::gatherCommands(Instant now) {
             m_queue.forget(removed->player);
         }
     }
-    // The world's own cap counts the host's commands too; theirs come first.
-    const std::uint32_t cap = m_world.info().maxCommandsPerTick;
-    const auto own = static_cast<std::uint32_t>(commands.size());
-    const std::uint32_t room = std::min(m_limits.commandsPerFrame, cap > own ? cap - own : 0);
+    // The world's own cap is of players' commands alone, as this one is.
+    const std::uint32_t room =
+        std::min(m_limits.commandsPerFrame, m_world.info().maxCommandsPerTick);
     std::vector<Command> queued = m_queue.take(tick(), room);
     commands.insert(commands.end(), std::make_move_iterator(queued.begin()),
                     std::make_move_iterator(queued.end()));
@@ -134,14 +133,50 @@ std::optional<std::uint64_t> Session::rootAt(std::uint64_t at) const {
 
 SharedSnapshot Session::snapshotForJoin(std::uint64_t notBefore) {
     const std::uint64_t recent = tick() > m_limits.freshTicks ? tick() - m_limits.freshTicks : 0;
-    const std::uint64_t oldest = std::max(recent, std::min(notBefore, tick()));
-    const SharedSnapshot keyframe = m_keyframes.newest();
-    for (const SharedSnapshot& candidate : {m_fresh, keyframe}) {
-        if (!candidate || candidate->tick < oldest) continue;
-        if (candidate->tick == tick() || m_frames.find(candidate->tick)) return candidate;
+    const std::uint64_t earliest = std::min(notBefore, tick());
+    const auto goesOn = [this](const Snapshot& from) {
+        return from.tick == tick() || m_frames.find(from.tick);
+    };
+    for (const SharedSnapshot& candidate : {m_fresh, m_keyframes.newest()}) {
+        if (!candidate || candidate->tick < std::max(recent, earliest)) continue;
+        if (!goesOn(*candidate)) continue;
+        if (SharedSnapshot lent = lend(candidate)) return lent;
     }
-    m_fresh = takeSnapshot(m_world);
-    return m_fresh;
+    if (lentNow().size() < m_limits.lentSnapshots) {
+        m_fresh = takeSnapshot(m_world);
+        return lend(m_fresh);
+    }
+    SharedSnapshot newest;
+    for (const SharedSnapshot& lent : lentNow()) {
+        if (lent->tick < earliest || !goesOn(*lent)) continue;
+        if (!newest || lent->tick > newest->tick) newest = lent;
+    }
+    return newest;
+}
+
+SharedSnapshot Session::snapshotOf(const World& world) {
+    return lentNow().size() < m_limits.lentSnapshots ? lend(takeSnapshot(world)) : nullptr;
+}
+
+SharedSnapshot Session::lend(const SharedSnapshot& snapshot) {
+    const std::vector<SharedSnapshot> now = lentNow();
+    for (const SharedSnapshot& lent : now) {
+        if (lent.get() == snapshot.get()) return lent;
+    }
+    if (now.size() >= m_limits.lentSnapshots) return nullptr;
+    // A pointer with a count of its own: what is kept here besides does not count as lent.
+    SharedSnapshot lent(snapshot.get(), [snapshot](const Snapshot*) {});
+    m_lent.push_back(lent);
+    return lent;
+}
+
+std::vector<SharedSnapshot> Session::lentNow() {
+    std::vector<SharedSnapshot> now;
+    for (const auto& each : m_lent) {
+        if (SharedSnapshot lent = each.lock()) now.push_back(std::move(lent));
+    }
+    m_lent.assign(now.begin(), now.end());
+    return now;
 }
 
 void Session::noteDefinitions() {

@@ -80,8 +80,12 @@ class Session {
     [[nodiscard]] std::optional<std::uint64_t> rootAt(std::uint64_t tick) const;
     /// A snapshot for a joiner: at most `freshTicks` old, its frames still in the ring. Many
     /// joiners share one, so that they cost the session one save. Not before `notBefore`, where
-    /// the client has been, if the session has come so far.
+    /// the client has been, if the session has come so far. While `lentSnapshots` different ones
+    /// are held by clients, it is the newest of those, however old; null: none of them will do,
+    /// ask again later.
     SharedSnapshot snapshotForJoin(std::uint64_t notBefore = 0);
+    /// A snapshot of a rebuilt world, for one client; null: too many are held.
+    SharedSnapshot snapshotOf(const World& world);
     /// Worlds of recent ticks, for comparing with a client whose world differs.
     Rebuilder& rebuilder() { return m_rebuilder; }
 
@@ -93,6 +97,9 @@ class Session {
  private:
     std::vector<Command> gatherCommands(Instant now);
     void noteDefinitions();
+    /// The same snapshot, counted for as long as anybody holds it; null: too many are held.
+    SharedSnapshot lend(const SharedSnapshot& snapshot);
+    std::vector<SharedSnapshot> lentNow();
 
     std::string m_name;
     std::uint32_t m_epoch;
@@ -104,6 +111,7 @@ class Session {
     Keyframes m_keyframes;
     Rebuilder m_rebuilder;
     SharedSnapshot m_fresh;  ///< the last one made for a joiner
+    std::vector<std::weak_ptr<const Snapshot>> m_lent;
     std::uint64_t m_committed;
     std::optional<std::string> m_failure;
     std::uint32_t m_definitions = 1;

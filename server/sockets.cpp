@@ -24,10 +24,6 @@ struct Sockets::Write {
 
 namespace {
 
-/// The kernel's share of what a slow client has not read; small, so that lag shows.
-constexpr int sendBufferBytes = 128 << 10;
-constexpr int backlog = 128;
-
 template <class Handle>
 uv_handle_t* asHandle(Handle* handle) {
     return reinterpret_cast<uv_handle_t*>(handle);
@@ -85,7 +81,8 @@ Status Sockets::listen(const protocol::Address& address) {
     if (status != 0) return refused(address, status);
     m_listener->open = true;
     status = uv_tcp_bind(&m_listener->handle, found->ai_addr, 0);
-    if (status == 0) status = uv_listen(asStream(&m_listener->handle), backlog, onConnection);
+    if (status == 0)
+        status = uv_listen(asStream(&m_listener->handle), m_hub.limits().backlog, onConnection);
     if (status != 0) {
         stopListening();
         return refused(address, status);
@@ -131,7 +128,7 @@ void Sockets::accept() {
 }
 
 void Sockets::start(std::unique_ptr<Socket> socket) {
-    int sendBuffer = sendBufferBytes;
+    int sendBuffer = m_hub.limits().sendBufferBytes;
     uv_send_buffer_size(asHandle(&socket->tcp), &sendBuffer);
     uv_tcp_nodelay(&socket->tcp, 1);
     m_sockets.emplace(socket->id, socket.get());

@@ -33,15 +33,11 @@ std::uint16_t portOf(const sockaddr_storage& storage) {
                : ntohs(reinterpret_cast<const sockaddr_in*>(&storage)->sin_port);
 }
 
-/// Whoever has one IPv6 number has its /64.
 std::string peerOf(uv_tcp_t* tcp) {
     sockaddr_storage storage{};
     int length = sizeof storage;
     uv_tcp_getpeername(tcp, reinterpret_cast<sockaddr*>(&storage), &length);
-    if (storage.ss_family == AF_INET6) {
-        std::memset(reinterpret_cast<sockaddr_in6*>(&storage)->sin6_addr.s6_addr + 8, 0, 8);
-    }
-    return numberOf(storage);
+    return visitorOf(storage);
 }
 
 Error refused(const protocol::Address& address, int status) {
@@ -50,6 +46,15 @@ Error refused(const protocol::Address& address, int status) {
 }
 
 }  // namespace
+
+std::string visitorOf(sockaddr_storage storage) {
+    if (storage.ss_family == AF_INET6) {
+        in6_addr& number = reinterpret_cast<sockaddr_in6*>(&storage)->sin6_addr;
+        // An IPv4 number as a listener of both families sees it: its /64 is everybody's.
+        if (!IN6_IS_ADDR_V4MAPPED(&number)) std::memset(number.s6_addr + 8, 0, 8);
+    }
+    return numberOf(storage);
+}
 
 WebListener::WebListener(uv_loop_t& loop, int sendBufferBytes, Take take)
     : m_loop(loop), m_sendBufferBytes(sendBufferBytes), m_take(std::move(take)) {}

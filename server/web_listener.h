@@ -15,10 +15,13 @@
 
 namespace huestep::server {
 
+/// Who is to be held to one visitor's rate: an IPv4 number, or the /64 of an IPv6 number, since
+/// whoever has one has them all.
+std::string visitorOf(sockaddr_storage peer);
+
 class WebListener {
  public:
-    /// Takes over a connected, non-blocking socket; `peer` is the number of its other end, of an
-    /// IPv6 number the /64.
+    /// Takes over a connected, non-blocking socket; `peer` is `visitorOf` its other end.
     using Take = std::function<void(int descriptor, const std::string& peer)>;
 
     WebListener(uv_loop_t& loop, int sendBufferBytes, Take take);

@@ -1,4 +1,5 @@
 /// `huestep`: one program, one subcommand a file beside this one.
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -49,6 +50,8 @@ int runProgram(int count, char** words) {
         return badUse(wrong.what() + std::string("; see huestep --help"));
     }
     catchInterrupts();
+    // Who talks to others outlives them. Whoever only prints ends with its reader, as is usual.
+    if (app.got_subcommand("serve") || app.got_subcommand("join")) std::signal(SIGPIPE, SIG_IGN);
     const Answer answer = menu.chosen();
     if (!answer) return badUse(answer.error().message);
     return static_cast<int>(*answer);

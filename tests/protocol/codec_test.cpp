@@ -337,14 +337,15 @@ TEST(CodecLimits, SpawnedBodiesShapesAndJoints) {
     EXPECT_EQ(answerTo(frame), "accepted");
 }
 
-TEST(CodecLimits, APlayersSpawnOfEightBodiesFitsAnIntent) {
+TEST(CodecLimits, TheLargestSpawnThatAWorldTakesOfAPlayerFitsAnIntent) {
     ShapeDef shape;
     shape.kind = ShapeKind::Polygon;
     shape.vertexCount = maxPolygonVertices;
     BodyDef body;
-    body.shapes.assign(7, shape);
-    EXPECT_EQ(answerTo(Intent{{{7, 1, Spawn{std::vector<BodyDef>(8, body), {}}}}, Checkpoint{}}),
-              "accepted");
+    body.shapes.assign(8, shape);
+    const Command command{7, 1, Spawn{std::vector<BodyDef>(8, body), {}}};
+    EXPECT_EQ(answerTo(Intent{{command}, Checkpoint{}}), "accepted");
+    EXPECT_LE(commandBytes(command), minQueuedBytes);
 }
 
 TEST(CodecLimits, NumbersMustBeFinite) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
+
+#include <string>
 
 namespace huestep::protocol {
 namespace {
@@ -22,6 +25,17 @@ TEST(PlainText, IsUtf8WithoutControlCharacters) {
           std::string("\xf0\x8f\xbf\xbf"), std::string("\xf0\x9f\x8e"),
           std::string("\xf4\x90\x80\x80"), std::string("\xf5\x80\x80\x80"), std::string("\xff")}) {
         EXPECT_FALSE(isPlainText(bad)) << bad;
+    }
+}
+
+TEST(PlainText, IsCutBetweenCharacters) {
+    const std::string text = "a\u00e9\u20ac\U0001f600z";  // 1, 2, 3, 4 and 1 bytes
+    const std::vector<std::size_t> lengths{0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 11, 11};
+    for (std::size_t most = 0; most < lengths.size(); ++most) {
+        const std::string cut = cutText(text, most);
+        EXPECT_EQ(cut.size(), lengths[most]) << most;
+        EXPECT_TRUE(isPlainText(cut)) << most;
+        EXPECT_EQ(text.rfind(cut, 0), 0u);
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "desk.h"
 #include "protocol/codec.h"
 
@@ -11,6 +13,7 @@ namespace {
 
 using protocol::ByeReason;
 using test::Desk;
+using test::deskScene;
 using test::Peer;
 
 TEST(Connection, APlayerIsWelcomedOnceItsFrameIsOnDisk) {
@@ -73,16 +76,43 @@ TEST(Connection, WrongVersionFingerprintOrSessionIsRefusedWithItsReason) {
     EXPECT_EQ(refusal([](auto& hello) { hello.session = "nowhere"; }), ByeReason::UnknownSession);
 }
 
-TEST(Connection, AnotherBuildMayWatch) {
+TEST(Connection, ASpectatorOfAnotherBuildIsSentToThePage) {
     Desk desk;
     Peer peer(desk);
     protocol::Hello hello = peer.hello();
     hello.fingerprint.selfTest = 1;
     hello.role = protocol::Role::Spectator;
     peer.say(hello);
-    peer.read();
-    ASSERT_EQ(peer.count<protocol::Welcome>(), 1u);
-    EXPECT_EQ(peer.last<protocol::Welcome>()->player, 0u);
+    EXPECT_EQ(peer.bye(), ByeReason::FingerprintMismatch);
+    EXPECT_EQ(peer.count<protocol::Welcome>(), 0u);
+    EXPECT_NE(peer.last<protocol::Bye>()->text.find("--web"), std::string::npos);
+}
+
+TEST(Connection, WhatAByeSaysIsCutBetweenCharacters) {
+    ConnectionContext context;
+    Connection connection(1, "test", context, 0);
+    connection.end(ByeReason::BadMessage, std::string(255, 'x') + "\u00e9 and more", false, 0);
+    const SharedBytes bytes = connection.next(0, 0);
+    ASSERT_NE(bytes, nullptr);
+    protocol::FrameSplitter splitter;
+    std::vector<protocol::Message> heard;
+    const Status fed = splitter.feed(*bytes, heard);
+    ASSERT_TRUE(fed.ok()) << fed.error().message;
+    EXPECT_EQ(std::get<protocol::Bye>(heard.at(0)).text, std::string(255, 'x'));
+}
+
+TEST(Connection, TheLargestSpawnThatAWorldTakesOfAPlayerIsTaken) {
+    Desk desk;
+    Peer peer(desk);
+    peer.join();
+    ShapeDef shape;
+    shape.kind = ShapeKind::Polygon;
+    shape.vertexCount = maxPolygonVertices;
+    BodyDef body;
+    body.shapes.assign(8, shape);
+    peer.say(protocol::Intent{{{1, 1, Spawn{std::vector<BodyDef>(8, body), {}}}}, std::nullopt});
+    EXPECT_EQ(peer.bye(), std::nullopt);
+    EXPECT_EQ(desk.hub.counters().commandsQueued, 1u);
 }
 
 TEST(Connection, NothingLargerThanAHelloIsReadBeforeOne) {
@@ -298,6 +328,23 @@ TEST(Connection, AClientsCheckpointIsCompared) {
     EXPECT_TRUE(desk.logged("event=checkpoint_mismatch"));
 }
 
+TEST(Connection, ASpectatorCannotFloodTheLogWithCheckpoints) {
+    Desk desk;
+    Peer peer(desk);
+    peer.watch();
+    desk.tick(5);
+    for (int i = 0; i < 200; ++i) {
+        peer.say(protocol::Intent{{}, protocol::Checkpoint{desk.session->tick(), 12345}});
+    }
+    EXPECT_EQ(peer.bye(), std::nullopt);
+    EXPECT_EQ(desk.hub.counters().checkpointMismatches, 200u);
+    const auto lines = std::count_if(desk.log.begin(), desk.log.end(), [](const auto& line) {
+        return line.find("event=checkpoint_mismatch") != std::string::npos;
+    });
+    EXPECT_GE(lines, 1);
+    EXPECT_LE(lines, 5);
+}
+
 TEST(Connection, ADesyncReportIsLoggedWithTickBodyAndField) {
     Desk desk;
     Peer peer(desk);
@@ -382,6 +429,98 @@ TEST(SlowConsumer, AJoinersSnapshotDoesNotHoldUpTheOthers) {
         quick.read();
         EXPECT_EQ(quick.last<protocol::Frame>()->tick + 1, desk.session->tick());
     }
+}
+
+/// Lets a joiner take one byte of its snapshot a tick, for so many seconds; how many were too slow.
+std::uint64_t trickled(double leastBytesPerSecond, int seconds) {
+    Limits limits;
+    limits.lowWater = 1'000;
+    limits.snapshotBytesPerSecond = leastBytesPerSecond;
+    Desk desk(limits);
+    Peer peer(desk);
+    protocol::Hello hello = peer.hello();
+    hello.role = protocol::Role::Spectator;
+    peer.say(hello);
+    std::vector<protocol::Message> heard;
+    protocol::FrameSplitter splitter;
+    std::size_t unsent = 0;
+    for (int i = 0; i < 60 * seconds; ++i) {
+        desk.tick();
+        peer.say(protocol::Ping{1, true});
+        while (const SharedBytes bytes = desk.hub.next(peer.id(), unsent, desk.now)) {
+            unsent += bytes->size();
+            EXPECT_TRUE(splitter.feed(*bytes, heard).ok());
+        }
+        --unsent;
+    }
+    EXPECT_GT(unsent, 1'000u) << "the snapshot is not through";
+    return desk.hub.counters().tooSlow;
+}
+
+TEST(SlowConsumer, OneThatStaysTooFarBehindIsDropped) {
+    Desk desk;
+    Peer first(desk);
+    protocol::Hello hello = first.hello();
+    hello.resume = first.join().resume;
+    hello.haveTick = desk.session->tick();
+    hello.haveHash = desk.session->world().motionRoot();
+    desk.hub.closed(first.id(), desk.now);
+    desk.tick(200);
+    Peer again(desk);
+    again.say(hello);
+    for (int i = 0; i < 60 * 12; ++i) {
+        desk.tick();
+        again.say(protocol::Ping{1, true});
+        // One message a tick keeps it as far behind as it came.
+        static_cast<void>(desk.hub.next(again.id(), 0, desk.now));
+        if (i == 60 * 9) {
+            EXPECT_EQ(desk.hub.counters().tooSlow, 0u);
+        }
+    }
+    EXPECT_EQ(desk.hub.counters().tooSlow, 1u);
+    EXPECT_EQ(desk.hub.counters().resyncs, 0u);
+    EXPECT_TRUE(desk.logged("too far behind for too long"));
+}
+
+TEST(SlowConsumer, OneThatTakesABitOfItsSnapshotNowAndThenIsDropped) {
+    EXPECT_EQ(trickled(16.0 * 1024.0, 12), 1u);
+}
+
+TEST(SlowConsumer, OneThatKeepsThePaceOfASnapshotIsNot) {
+    EXPECT_EQ(trickled(30.0, 12), 0u);
+}
+
+TEST(SlowConsumer, ThoseWhoReadSnapshotsSlowlyHoldFewAndOthersShareTheNewestOfThem) {
+    Limits limits;
+    limits.lentSnapshots = 1;
+    Desk desk(limits);
+    desk.tick(100);
+    Peer slow(desk);
+    protocol::Hello hello = slow.hello();
+    hello.role = protocol::Role::Spectator;
+    slow.say(hello);  // and reads nothing
+    desk.tick(50);
+    Peer quick(desk);
+    quick.watch();
+    ASSERT_EQ(quick.count<protocol::SnapshotBegin>(), 1u);
+    EXPECT_LE(quick.last<protocol::SnapshotBegin>()->tick, 100u) << "the one that is held";
+    EXPECT_EQ(quick.last<protocol::Frame>()->tick + 1, desk.session->tick()) << "and the tail";
+
+    quick.heard.clear();
+    const std::uint64_t tick = desk.session->tick();
+    quick.say(protocol::SnapshotRequest{tick});
+    desk.tick(60);  // its world is rebuilt by then
+    quick.read();
+    EXPECT_EQ(quick.count<protocol::SnapshotBegin>(), 0u) << "no second one is made";
+    slow.read();
+    desk.tick();
+    quick.read();
+    ASSERT_EQ(quick.count<protocol::SnapshotBegin>(), 1u);
+    EXPECT_GE(quick.last<protocol::SnapshotBegin>()->tick, tick);
+    desk.tick();
+    quick.read();
+    ASSERT_NE(quick.last<protocol::Frame>(), nullptr);
+    EXPECT_EQ(quick.last<protocol::Frame>()->tick + 1, desk.session->tick());
 }
 
 }  // namespace

@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+
 #include "core/state/hash.h"
 #include "desk.h"
 #include "protocol/memory_store.h"
@@ -240,6 +245,107 @@ TEST(LogWriter, TellsWhatIsOnDiskAndWritesTheRestAtTheEnd) {
     ASSERT_TRUE(journal.ok());
     EXPECT_EQ(journal->nextTick, 50u);
     EXPECT_EQ(journal->snapshotTick, 50u);
+}
+
+/// A disk whose changes wait while it is shut.
+class GatedStore : public MemoryStore {
+ public:
+    explicit GatedStore(const std::string& path) : MemoryStore(path) {}
+    Status append(const std::string& name, std::span<const std::byte> bytes) override {
+        wait(m_appendsShut);
+        return MemoryStore::append(name, bytes);
+    }
+    Status replace(const std::string& name, std::span<const std::byte> bytes) override {
+        if (name.ends_with(".snap")) wait(m_snapshotsShut);
+        return MemoryStore::replace(name, bytes);
+    }
+    void shut(bool appends, bool snapshots) {
+        const std::lock_guard lock(m_mutex);
+        m_appendsShut = appends;
+        m_snapshotsShut = snapshots;
+        m_changed.notify_all();
+    }
+    void awaitCaller() {
+        std::unique_lock lock(m_mutex);
+        m_changed.wait(lock, [this] { return m_inside; });
+    }
+
+ private:
+    void wait(const bool& shut) {
+        std::unique_lock lock(m_mutex);
+        m_inside = true;
+        m_changed.notify_all();
+        m_changed.wait(lock, [&] { return !shut; });
+        m_inside = false;
+    }
+    std::mutex m_mutex;
+    std::condition_variable m_changed;
+    bool m_appendsShut = false;
+    bool m_snapshotsShut = false;
+    bool m_inside = false;
+};
+
+TEST(LogWriter, ASnapshotOfOneSessionHoldsUpNoCommitOfAnother) {
+    const Scene scene = deskScene();
+    std::mutex mutex;
+    std::condition_variable woken;
+    int wakes = 0;
+    LogWriter writer([&] {
+        const std::lock_guard lock(mutex);
+        ++wakes;
+        woken.notify_all();
+    });
+    std::map<std::string, GatedStore*> disks;
+    std::map<std::string, std::unique_ptr<Life>> lives;
+    for (const std::string name : {"a", "b"}) {
+        auto store = std::make_unique<GatedStore>(name);
+        disks[name] = store.get();
+        lives[name] = std::make_unique<Life>(*store, Limits{}, &scene);
+        ASSERT_TRUE(lives[name]->open().ok());
+        writer.add(name, std::move(store), std::move(*lives[name]->writer));
+    }
+    // Holds the writer's thread, so that it finds the snapshot of one and the tick of both at once.
+    disks["a"]->shut(true, true);
+    writer.write("a", lives["a"]->session->closeTick(second, {}));
+    disks["a"]->awaitCaller();
+    ClosedTick last = lives["a"]->session->closeTick(second, {});
+    const ClosedTick record = lives["a"]->session->finalRecord();
+    last.entries.insert(last.entries.end(), record.entries.begin(), record.entries.end());
+    last.snapshot = record.snapshot;
+    writer.write("a", std::move(last));
+    writer.write("b", lives["b"]->session->closeTick(second, {}));
+    disks["a"]->shut(false, true);
+    std::vector<std::string> committed;
+    {
+        std::unique_lock lock(mutex);
+        woken.wait_for(lock, std::chrono::seconds(10), [&] { return wakes >= 2; });
+    }
+    for (const JournalNews& news : writer.takeNews()) committed.push_back(news.session);
+    EXPECT_EQ(committed, (std::vector<std::string>{"a", "a", "b"})) << "with the snapshot to come";
+    disks["a"]->shut(false, false);
+    writer.finish();
+}
+
+TEST(LogWriter, ASegmentThatHasReachedItsSizeIsFollowedByAnother) {
+    const Scene scene = deskScene();
+    MemoryStore disk;
+    Life life(disk, {}, &scene);
+    ASSERT_TRUE(life.open().ok());
+    for (int i = 0; i < 60; ++i) {
+        const ClosedTick closed = life.session->closeTick(second, {});
+        ASSERT_TRUE(appendBatch(*life.writer, {&closed, 1}, 1'000).ok());
+    }
+    std::size_t segments = 0;
+    const std::vector<std::string> names = *disk.list();
+    for (const std::string& name : names) {
+        if (name.rfind("segment-", 0) != 0) continue;
+        ++segments;
+        EXPECT_LE(disk.bytes(name).size(), 1'000u + 200u) << name << ": one frame more at most";
+    }
+    EXPECT_GT(segments, 5u);
+    const auto journal = protocol::readJournal(disk);
+    ASSERT_TRUE(journal.ok()) << journal.error().message;
+    EXPECT_EQ(journal->nextTick, 60u);
 }
 
 TEST(LogWriter, AFullDiskFailsTheJournalForGood) {

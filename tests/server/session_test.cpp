@@ -137,6 +137,72 @@ TEST(Session, InputDelayHoldsCommandsBack) {
     EXPECT_EQ(bench.session.tick(), tick + 4);
 }
 
+TEST(Session, AFrameTakesNoMoreOfPlayersThanItsLimits) {
+    Limits byNumber;
+    byNumber.commandsPerFrame = 3;
+    Limits byBytes;
+    byBytes.frameCommandBytes = 3 * protocol::commandBytes({1, 1, Release{}}) + 1;
+    for (const Limits& limits : {byNumber, byBytes}) {
+        Bench bench(limits);
+        const PlayerId one = bench.seat(), two = bench.seat();
+        for (std::uint64_t s = 1; s <= 4; ++s) {
+            bench.session.queue(one, {0, s, Release{}});
+            bench.session.queue(two, {0, s, Release{}});
+        }
+        for (const std::size_t expected : {3u, 3u, 2u, 0u}) {
+            EXPECT_EQ(frameOf(bench.close()).commands.size(), expected);
+        }
+    }
+}
+
+TEST(Session, TheHostsOwnCommandsTakeNoRoomOfThePlayersInAFrame) {
+    // The world's cap is of players' commands: see core/world/commands.cpp.
+    Scene scene = deskScene();
+    scene.limits.commandsPerTick = 2;
+    Bench bench({}, scene);
+    const PlayerId one = bench.seat();
+    bench.session.queue(one, {0, 1, Release{}});
+    bench.session.queue(one, {0, 2, Release{}});
+    ASSERT_TRUE(bench.session.seats().join().has_value());
+    EXPECT_EQ(frameOf(bench.close()).commands.size(), 3u);
+    for (const CommandOutcome& outcome : bench.session.world().events().commands) {
+        EXPECT_NE(outcome.reason, Rejection::OverLimit);
+    }
+}
+
+TEST(Session, FramesAreKeptWithinTheirBytes) {
+    Limits limits;
+    limits.recentBytes = 2'000;
+    Bench bench(limits);
+    for (int i = 0; i < 100; ++i) bench.close();
+    EXPECT_LE(bench.session.frames().bytes(), 2'000u);
+    EXPECT_GT(bench.session.frames().size(), 10u);
+    EXPECT_LT(bench.session.frames().size(), 100u);
+}
+
+TEST(Session, FewDifferentSnapshotsAreLentAtATime) {
+    Limits limits;
+    limits.lentSnapshots = 2;
+    limits.freshTicks = 1;
+    Bench bench(limits);
+    const auto later = [&] {
+        for (int i = 0; i < 5; ++i) bench.close();
+    };
+    later();
+    SharedSnapshot first = bench.session.snapshotForJoin();
+    later();
+    const SharedSnapshot second = bench.session.snapshotForJoin();
+    later();
+    ASSERT_NE(second, first);
+    EXPECT_EQ(bench.session.snapshotForJoin(), second) << "the newest of those that are held";
+    EXPECT_EQ(bench.session.snapshotForJoin(bench.session.tick()), nullptr);
+    EXPECT_EQ(bench.session.snapshotOf(bench.session.world()), nullptr);
+    first.reset();
+    const SharedSnapshot third = bench.session.snapshotForJoin(bench.session.tick());
+    ASSERT_NE(third, nullptr);
+    EXPECT_EQ(third->tick, bench.session.tick());
+}
+
 TEST(Session, ManyJoinersShareOneSnapshot) {
     Bench bench;
     for (int i = 0; i < 7; ++i) bench.close();
@@ -247,18 +313,51 @@ TEST(Seats, AnAbandonedJoinLeavesNobodyBehind) {
     EXPECT_EQ(bench.session.seats().taken(), 0u);
 }
 
-TEST(Seats, ATokenIsGoodOnceItsSuccessorWasUsed) {
+TEST(Seats, ATokenIsOfNoUseOnceItsSuccessorWasUsed) {
     Bench bench;
     Seats& seats = bench.session.seats();
     const PlayerId player = bench.seat();
     const protocol::ResumeToken first = seats.issue(player);
     ASSERT_TRUE(seats.resume(first, bench.now).ok());
     const protocol::ResumeToken second = seats.issue(player);
-    EXPECT_TRUE(seats.resume(first, bench.now).ok()) << "the answer may have been lost";
-    const protocol::ResumeToken third = seats.issue(player);
-    EXPECT_FALSE(seats.resume(first, bench.now).ok());
+    EXPECT_NE(second, first);
     EXPECT_TRUE(seats.resume(second, bench.now).ok());
+    const protocol::ResumeToken third = seats.issue(player);
+    EXPECT_NE(third, second);
+    EXPECT_FALSE(seats.resume(first, bench.now).ok());
     EXPECT_TRUE(seats.resume(third, bench.now).ok());
+}
+
+TEST(Seats, AnyNumberOfAnswersThatAreLostCostNoSeat) {
+    Bench bench;
+    Seats& seats = bench.session.seats();
+    const PlayerId player = bench.seat();
+    const protocol::ResumeToken first = seats.issue(player);
+    ASSERT_TRUE(seats.resume(first, bench.now).ok());
+    const protocol::ResumeToken lost = seats.issue(player);
+    for (int i = 0; i < 5; ++i) {
+        ASSERT_TRUE(seats.resume(first, bench.now).ok()) << i;
+        EXPECT_EQ(seats.issue(player), lost) << "the same goes out until it is shown";
+    }
+    EXPECT_TRUE(seats.resume(lost, bench.now).ok());
+    EXPECT_NE(seats.issue(player), lost);
+    EXPECT_FALSE(seats.resume(first, bench.now).ok());
+}
+
+TEST(Seats, AnyNumberOfAnswersThatAreLostAfterARestartCostNoSeat) {
+    Bench bench;
+    const PlayerId player = bench.seat();
+    const protocol::ResumeToken old = bench.session.seats().issue(player);
+    SessionStart again{"play", 2, ResumeKey{5, 6, 7}, nullptr, {}, bench.session.world()};
+    Session next(std::move(again), bench.limits, bench.now);
+    protocol::ResumeToken fresh{};
+    for (int i = 0; i < 5; ++i) {
+        ASSERT_TRUE(next.seats().resume(old, bench.now).ok()) << i;
+        fresh = next.seats().issue(player);
+    }
+    ASSERT_TRUE(next.seats().resume(fresh, bench.now).ok());
+    EXPECT_NE(next.seats().issue(player), fresh);
+    EXPECT_FALSE(next.seats().resume(old, bench.now).ok());
 }
 
 TEST(Seats, ATokenOutlivesTheServerButNotTheSeat) {

@@ -8,11 +8,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <thread>
 
 #include "client/player.h"
 #include "protocol/address.h"
+#include "protocol/codec.h"
 #include "protocol/journal.h"
 #include "relay.h"
 #include "simulation.h"
@@ -286,6 +288,80 @@ TEST(Host, PartsAreToldOfTicksAndOfTheEnd) {
     thread.join();
     EXPECT_EQ(part->stops, 1);
     EXPECT_EQ(part->poses, playground().bodies.size());
+}
+
+/// A part that holds the host up after each tick, so that ticks are always late; not for good.
+struct SlowPart : server::HostPart {
+    std::atomic<int> ticks{0};
+    void afterTick(const server::Session&) override {
+        if (++ticks < 150) std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    }
+    void stopping() override {}
+};
+
+TEST(Host, OneWhoseStepsExceedTheirPeriodStillHearsAndStops) {
+    Folder folder;
+    auto opened = server::Host::open(configFor(folder));
+    ASSERT_TRUE(opened.ok());
+    const auto part = std::make_shared<SlowPart>();
+    (*opened)->add(part);
+    std::thread thread([&] { EXPECT_TRUE((*opened)->run().ok()); });
+    while (part->ticks < 5) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    (*opened)->stop();
+    thread.join();
+    EXPECT_LT(part->ticks, 150) << "it stopped while it was late";
+}
+
+int connectTo(const std::string& text) {
+    const auto address = *protocol::parseAddress(text, false);
+    const int handle = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(address.port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(handle, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+    return handle;
+}
+
+/// Lets a client of session `b` vanish within the turn of the loop in which `a` closes a tick, and
+/// waits until `b` is due too: so the host writes to it before it can learn of it.
+struct VanishingClient : server::HostPart {
+    int client = -1;
+    std::atomic<int> ticks{0};
+    void afterTick(const server::Session& session) override {
+        if (session.name() != "a" || ++ticks != 20) return;
+        ::shutdown(client, SHUT_WR);
+        const linger reset{1, 0};
+        ::setsockopt(client, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+        ::close(client);
+        std::this_thread::sleep_for(std::chrono::milliseconds(40));
+    }
+    void stopping() override {}
+};
+
+TEST(Host, AClientThatVanishesBeforeAWriteEndsNothingButItself) {
+    std::signal(SIGPIPE, SIG_DFL);
+    Folder folder;
+    server::HostConfig config = configFor(folder);
+    config.sessions = {{"a", playground()}, {"b", playground()}};
+    auto opened = server::Host::open(std::move(config));
+    ASSERT_TRUE(opened.ok());
+    const auto part = std::make_shared<VanishingClient>();
+    part->client = connectTo((*opened)->address());
+    protocol::Hello hello;
+    hello.fingerprint = print;
+    hello.session = "b";
+    hello.role = protocol::Role::Spectator;
+    const std::vector<std::byte> bytes = protocol::encode(hello);
+    ASSERT_EQ(::send(part->client, bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
+    (*opened)->add(part);
+    std::thread thread([&] { EXPECT_TRUE((*opened)->run().ok()); });
+    while (part->ticks < 40) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    (*opened)->stop();
+    thread.join();
+    EXPECT_EQ((*opened)->hub().counters().accepted, 1u);
+    EXPECT_TRUE((*opened)->hub().connections().empty());
 }
 
 }  // namespace
