@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "protocol/journal.h"
@@ -26,6 +27,12 @@ Result<ResumeKey> randomKey() {
     return key;
 }
 
+/// Only descriptors can run out here, before anything is opened; `Host::open` makes it a sentence.
+void demand(int status, const char* what) {
+    if (status == 0) return;
+    throw std::runtime_error(std::string("no ") + what + ": " + uv_strerror(status));
+}
+
 }  // namespace
 
 /// A session and when its ticks are due.
@@ -45,7 +52,7 @@ struct Host::Inside {
 
     /// The loop and the handles must be there before the writer's thread, which wakes them.
     struct Loop : uv_loop_t {
-        Loop() { uv_loop_init(this); }
+        Loop() { demand(uv_loop_init(this), "event loop"); }
     };
 
     Status start();
@@ -85,16 +92,17 @@ struct Host::Inside {
 };
 
 void Host::Inside::initHandles() {
-    uv_async_init(&loop, &news,
-                  [](uv_async_t* handle) { static_cast<Inside*>(handle->data)->takeNews(); });
-    uv_async_init(&loop, &stopper,
-                  [](uv_async_t* handle) { static_cast<Inside*>(handle->data)->beginStop(); });
+    const auto onNews = [](uv_async_t* handle) { static_cast<Inside*>(handle->data)->takeNews(); };
+    const auto onStop = [](uv_async_t* handle) { static_cast<Inside*>(handle->data)->beginStop(); };
+    demand(uv_async_init(&loop, &news, onNews), "wake-up for news");
+    demand(uv_async_init(&loop, &stopper, onStop), "wake-up to stop");
+    demand(uv_signal_init(&loop, &interrupt), "signal handle");
+    demand(uv_signal_init(&loop, &terminate), "signal handle");
+    // These take nothing of the system.
     uv_timer_init(&loop, &ticks);
-    uv_idle_init(&loop, &late);
     uv_timer_init(&loop, &house);
     uv_timer_init(&loop, &farewell);
-    uv_signal_init(&loop, &interrupt);
-    uv_signal_init(&loop, &terminate);
+    uv_idle_init(&loop, &late);
     news.data = stopper.data = ticks.data = late.data = house.data = farewell.data = this;
     interrupt.data = terminate.data = this;
 }
@@ -288,7 +296,12 @@ Result<std::unique_ptr<Host>> Host::open(HostConfig config) {
     // A client that is gone is an error of the write to it, not the end of the process.
     std::signal(SIGPIPE, SIG_IGN);
     if (!config.log) config.log = logToStandardError();
-    auto inside = std::make_unique<Inside>(std::move(config));
+    std::unique_ptr<Inside> inside;
+    try {
+        inside = std::make_unique<Inside>(std::move(config));
+    } catch (const std::runtime_error& failure) {
+        return Error{failure.what()};
+    }
     if (Status started = inside->start(); !started) return started.error();
     return std::unique_ptr<Host>(new Host(std::move(inside)));
 }

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/listening.h"
+
 namespace huestep::server {
 
 struct Sockets::Socket {
@@ -22,96 +24,41 @@ struct Sockets::Write {
     std::vector<SharedBytes> bytes;
 };
 
-namespace {
-
-template <class Handle>
-uv_handle_t* asHandle(Handle* handle) {
-    return reinterpret_cast<uv_handle_t*>(handle);
-}
-template <class Handle>
-uv_stream_t* asStream(Handle* handle) {
-    return reinterpret_cast<uv_stream_t*>(handle);
-}
-
-protocol::Address addressOf(const sockaddr_storage& storage) {
-    char text[64] = "?";
-    protocol::Address out;
-    if (storage.ss_family == AF_INET6) {
-        const auto* six = reinterpret_cast<const sockaddr_in6*>(&storage);
-        uv_ip6_name(six, text, sizeof text);
-        out.port = ntohs(six->sin6_port);
-    } else {
-        const auto* four = reinterpret_cast<const sockaddr_in*>(&storage);
-        uv_ip4_name(four, text, sizeof text);
-        out.port = ntohs(four->sin_port);
-    }
-    out.host = text;
-    return out;
-}
-
-Error refused(const protocol::Address& address, int status) {
-    return Error{"cannot listen on " + protocol::toText(address) + ": " + uv_strerror(status)};
-}
-
-}  // namespace
-
 Sockets::Sockets(uv_loop_t& loop, Hub& hub) : m_loop(loop), m_hub(hub) {}
 
 Sockets::~Sockets() {
     assert(m_sockets.empty());
-    assert(!m_listener || !m_listener->open);
+    assert(!m_listener);
 }
 
 Status Sockets::listen(const protocol::Address& address) {
-    // Without a callback libuv resolves at once; this is the start of the program.
-    uv_getaddrinfo_t resolver{};
-    addrinfo hints{};
-    hints.ai_socktype = SOCK_STREAM;
-    hints.ai_flags = AI_PASSIVE;
-    const std::string port = std::to_string(address.port);
-    int status =
-        uv_getaddrinfo(&m_loop, &resolver, nullptr, address.host.c_str(), port.c_str(), &hints);
-    if (status != 0) return refused(address, status);
-    const std::unique_ptr<addrinfo, void (*)(addrinfo*)> found(resolver.addrinfo, uv_freeaddrinfo);
-
-    m_listener = std::make_unique<Listener>();
-    m_listener->owner = this;
-    m_listener->handle.data = m_listener.get();
-    status = uv_tcp_init(&m_loop, &m_listener->handle);
-    if (status != 0) return refused(address, status);
-    m_listener->open = true;
-    status = uv_tcp_bind(&m_listener->handle, found->ai_addr, 0);
-    if (status == 0)
-        status = uv_listen(asStream(&m_listener->handle), m_hub.limits().backlog, onConnection);
-    if (status != 0) {
-        stopListening();
-        return refused(address, status);
+    Result<Listening> listening =
+        listenOn(m_loop, address, m_hub.limits().backlog, onConnection, this);
+    if (!listening) {
+        return Error{"cannot listen on " + protocol::toText(address) + ": " +
+                     listening.error().message};
     }
-    sockaddr_storage storage{};
-    int length = sizeof storage;
-    uv_tcp_getsockname(&m_listener->handle, reinterpret_cast<sockaddr*>(&storage), &length);
-    m_bound = addressOf(storage);
+    m_listener = listening->handle;
+    m_bound = std::move(listening->bound);
     return Done{};
 }
 
 void Sockets::stopListening() {
-    if (!m_listener || !m_listener->open) return;
-    m_listener->open = false;
-    uv_close(asHandle(&m_listener.release()->handle),
-             [](uv_handle_t* handle) { delete static_cast<Listener*>(handle->data); });
+    if (m_listener) closeAndFree(std::exchange(m_listener, nullptr));
 }
 
 void Sockets::onConnection(uv_stream_t* listener, int status) {
-    if (status == 0) static_cast<Listener*>(listener->data)->owner->accept();
+    if (status == 0) static_cast<Sockets*>(listener->data)->accept();
 }
 
 void Sockets::accept() {
     auto socket = std::make_unique<Socket>();
     socket->owner = this;
-    uv_tcp_init(&m_loop, &socket->tcp);
+    [[maybe_unused]] const int made = uv_tcp_init(&m_loop, &socket->tcp);
+    assert(made == 0);  // it makes no socket yet, so there is nothing that could fail
     socket->tcp.data = socket.get();
     std::optional<ConnectionId> id;
-    if (uv_accept(asStream(&m_listener->handle), asStream(&socket->tcp)) == 0) {
+    if (uv_accept(asStream(m_listener), asStream(&socket->tcp)) == 0) {
         sockaddr_storage storage{};
         int length = sizeof storage;
         uv_tcp_getpeername(&socket->tcp, reinterpret_cast<sockaddr*>(&storage), &length);

@@ -38,11 +38,6 @@ class Sockets {
  private:
     struct Socket;
     struct Write;
-    struct Listener {
-        uv_tcp_t handle{};
-        Sockets* owner = nullptr;
-        bool open = false;
-    };
     static void onConnection(uv_stream_t* listener, int status);
     static void onAlloc(uv_handle_t* handle, std::size_t suggested, uv_buf_t* buffer);
     static void onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buffer);
@@ -55,7 +50,7 @@ class Sockets {
 
     uv_loop_t& m_loop;
     Hub& m_hub;
-    std::unique_ptr<Listener> m_listener;
+    uv_tcp_t* m_listener = nullptr;  ///< frees itself once closed
     protocol::Address m_bound;
     std::map<ConnectionId, Socket*> m_sockets;  ///< open ones; each frees itself once closed
     /// One buffer for all reads: libuv hands it back before it asks again.

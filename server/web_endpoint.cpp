@@ -24,7 +24,6 @@ namespace {
 
 constexpr std::size_t chunkBytes = 16u << 10;  ///< of a page's file, a turn
 constexpr std::size_t headRoom = 2048;         ///< for the head of a reply
-constexpr std::size_t rateBuckets = 256;
 
 /// To every reply. Nothing is loaded from elsewhere and no script stands in the page, so a name
 /// that found its way into the HTML could still run nothing.
@@ -104,7 +103,11 @@ struct WebEndpoint::Inside {
     bool takeToken(const Peer& peer);
     std::vector<WebSession> sessionList() const;
     std::size_t viewerCount() const;
+    struct Stream;
+    Stream& streamOf(const Session& session);
     void afterTick(const Session& session);
+    void heartbeat();
+    void show(const Session& session);
     void beginStop();
     void endStop();
 
@@ -115,9 +118,13 @@ struct WebEndpoint::Inside {
     lws_vhost* vhost = nullptr;
     std::array<lws_protocols, 2> protocols{};
     lws_retry_bo_t liveness{};
-    uv_timer_t* farewell = nullptr;  ///< frees itself once closed
+    uv_timer_t* timer = nullptr;  ///< heartbeats, then the farewell; frees itself once closed
     std::map<lws*, Peer> peers;
-    std::map<const Session*, TokenBucket> paces;
+    struct Stream {
+        TokenBucket pace;
+        Instant shown = 0;  ///< when its viewers were last offered a frame
+    };
+    std::map<const Session*, Stream> streams;
     std::vector<TokenBucket> rates;  ///< by a hash of the address: bounded, whoever comes
     WebCounters counters;
     std::string address;
@@ -127,9 +134,9 @@ struct WebEndpoint::Inside {
 WebEndpoint::Inside::Inside(Host& itsHost, WebConfig given)
     : host(itsHost),
       config(std::move(given)),
-      listener(*host.loop(), config.limits.sendBufferBytes,
+      listener(*host.loop(), config.limits.backlog, config.limits.sendBufferBytes,
                [this](int descriptor, const std::string& peer) { adopt(descriptor, peer); }),
-      rates(rateBuckets,
+      rates(config.limits.rateBuckets,
             TokenBucket(config.limits.requestsPerSecond, config.limits.requestBurst, uv_hrtime())) {
 }
 
@@ -148,9 +155,13 @@ Status WebEndpoint::Inside::start() {
         listener.close();
         return made;
     }
-    farewell = new uv_timer_t{};
-    uv_timer_init(host.loop(), farewell);
-    farewell->data = this;
+    timer = new uv_timer_t{};
+    uv_timer_init(host.loop(), timer);
+    timer->data = this;
+    const std::uint64_t every = config.limits.heartbeatMs / 2;
+    uv_timer_start(
+        timer, [](uv_timer_t* each) { static_cast<Inside*>(each->data)->heartbeat(); }, every,
+        every);
     LogLine("web_listening").with("address", address).to(config.log);
     return Done{};
 }
@@ -390,11 +401,25 @@ void WebEndpoint::Inside::forget(lws* wsi) {
     peers.erase(at);
 }
 
+WebEndpoint::Inside::Stream& WebEndpoint::Inside::streamOf(const Session& session) {
+    const TokenBucket pace(config.limits.viewsPerSecond, 4.0, uv_hrtime());
+    return streams.try_emplace(&session, Stream{pace, uv_hrtime()}).first->second;
+}
+
 void WebEndpoint::Inside::afterTick(const Session& session) {
-    if (stopping) return;
-    const double rate = config.limits.viewsPerSecond;
-    TokenBucket& pace = paces.try_emplace(&session, rate, 4.0, uv_hrtime()).first->second;
-    if (!pace.take(uv_hrtime())) return;
+    if (!stopping && streamOf(session).pace.take(uv_hrtime())) show(session);
+}
+
+/// A page tells a server that is gone from a session that stands still by what it hears.
+void WebEndpoint::Inside::heartbeat() {
+    const Instant since = uv_hrtime() - config.limits.heartbeatMs * millisecond;
+    for (const Session* session : host.hub().sessions()) {
+        if (streamOf(*session).shown < since) show(*session);
+    }
+}
+
+void WebEndpoint::Inside::show(const Session& session) {
+    streamOf(session).shown = uv_hrtime();
     // Made when the first viewer needs it, and shared by all.
     std::array<SharedWebFrame, 2> frames;
     for (auto& [wsi, peer] : peers) {
@@ -419,13 +444,13 @@ void WebEndpoint::Inside::beginStop() {
     }
     for (lws* wsi : watching) sayGoodbye(wsi);
     uv_timer_start(
-        farewell, [](uv_timer_t* timer) { static_cast<Inside*>(timer->data)->endStop(); },
+        timer, [](uv_timer_t* each) { static_cast<Inside*>(each->data)->endStop(); },
         config.limits.farewellMs, 0);
 }
 
 void WebEndpoint::Inside::endStop() {
     lws_context_destroy(context);
-    uv_close(reinterpret_cast<uv_handle_t*>(std::exchange(farewell, nullptr)),
+    uv_close(reinterpret_cast<uv_handle_t*>(std::exchange(timer, nullptr)),
              [](uv_handle_t* handle) { delete reinterpret_cast<uv_timer_t*>(handle); });
 }
 

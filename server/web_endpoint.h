@@ -25,12 +25,15 @@ namespace huestep::server {
 
 struct WebLimits {
     std::size_t connections = 256;
+    int backlog = 64;               ///< connections that the system holds for us to accept
     std::size_t viewers = 64;       ///< WebSockets among them, over all sessions
     double requestsPerSecond = 20;  ///< token bucket an address (IPv6: a /64)
     double requestBurst = 240;
+    std::size_t rateBuckets = 256;      ///< that addresses share by their hash
     double viewsPerSecond = 60;         ///< to each viewer; ticks beyond are left out
     std::uint16_t headerBytes = 4096;   ///< of a request's head
     std::uint16_t idleSeconds = 10;     ///< for a request's head, and between requests
+    std::uint64_t heartbeatMs = 2000;   ///< a session that stands still is shown so often
     std::uint16_t pingSeconds = 10;     ///< a viewer is pinged so often,
     std::uint16_t silenceSeconds = 25;  ///< and let go after so long without an answer
     int sendBufferBytes = 256 << 10;    ///< the kernel's share of a slow viewer's lag

@@ -1,48 +1,22 @@
 #include "server/web_listener.h"
 
 #include <fcntl.h>
-#include <netdb.h>
 
+#include <cassert>
 #include <cstring>
 #include <utility>
+
+#include "server/listening.h"
 
 namespace huestep::server {
 
 namespace {
-
-constexpr int backlog = 64;
-
-void closeAndFree(uv_tcp_t* tcp) {
-    uv_close(reinterpret_cast<uv_handle_t*>(tcp),
-             [](uv_handle_t* handle) { delete reinterpret_cast<uv_tcp_t*>(handle); });
-}
-
-std::string numberOf(const sockaddr_storage& storage) {
-    char text[64] = "?";
-    if (storage.ss_family == AF_INET6) {
-        uv_ip6_name(reinterpret_cast<const sockaddr_in6*>(&storage), text, sizeof text);
-    } else {
-        uv_ip4_name(reinterpret_cast<const sockaddr_in*>(&storage), text, sizeof text);
-    }
-    return text;
-}
-
-std::uint16_t portOf(const sockaddr_storage& storage) {
-    return storage.ss_family == AF_INET6
-               ? ntohs(reinterpret_cast<const sockaddr_in6*>(&storage)->sin6_port)
-               : ntohs(reinterpret_cast<const sockaddr_in*>(&storage)->sin_port);
-}
 
 std::string peerOf(uv_tcp_t* tcp) {
     sockaddr_storage storage{};
     int length = sizeof storage;
     uv_tcp_getpeername(tcp, reinterpret_cast<sockaddr*>(&storage), &length);
     return visitorOf(storage);
-}
-
-Error refused(const protocol::Address& address, int status) {
-    return Error{"cannot serve the page on " + protocol::toText(address) + ": " +
-                 uv_strerror(status)};
 }
 
 }  // namespace
@@ -53,11 +27,14 @@ std::string visitorOf(sockaddr_storage storage) {
         // An IPv4 number as a listener of both families sees it: its /64 is everybody's.
         if (!IN6_IS_ADDR_V4MAPPED(&number)) std::memset(number.s6_addr + 8, 0, 8);
     }
-    return numberOf(storage);
+    return addressOf(storage).host;
 }
 
-WebListener::WebListener(uv_loop_t& loop, int sendBufferBytes, Take take)
-    : m_loop(loop), m_sendBufferBytes(sendBufferBytes), m_take(std::move(take)) {}
+WebListener::WebListener(uv_loop_t& loop, int backlog, int sendBufferBytes, Take take)
+    : m_loop(loop),
+      m_backlog(backlog),
+      m_sendBufferBytes(sendBufferBytes),
+      m_take(std::move(take)) {}
 
 WebListener::~WebListener() {
     close();
@@ -68,33 +45,13 @@ void WebListener::close() {
 }
 
 Status WebListener::listen(const protocol::Address& address) {
-    uv_getaddrinfo_t resolver{};
-    addrinfo hints{};
-    hints.ai_socktype = SOCK_STREAM;
-    hints.ai_flags = AI_PASSIVE;
-    // Without a callback libuv resolves at once; this is the start of the program.
-    int status = uv_getaddrinfo(&m_loop, &resolver, nullptr, address.host.c_str(),
-                                std::to_string(address.port).c_str(), &hints);
-    if (status != 0) return refused(address, status);
-    const std::unique_ptr<addrinfo, void (*)(addrinfo*)> found(resolver.addrinfo, uv_freeaddrinfo);
-
-    auto handle = std::make_unique<uv_tcp_t>();
-    status = uv_tcp_init(&m_loop, handle.get());
-    if (status != 0) return refused(address, status);
-    m_handle = handle.release();
-    m_handle->data = this;
-    status = uv_tcp_bind(m_handle, found->ai_addr, 0);
-    if (status == 0) {
-        status = uv_listen(reinterpret_cast<uv_stream_t*>(m_handle), backlog, onConnection);
+    Result<Listening> listening = listenOn(m_loop, address, m_backlog, onConnection, this);
+    if (!listening) {
+        return Error{"cannot serve the page on " + protocol::toText(address) + ": " +
+                     listening.error().message};
     }
-    if (status != 0) {
-        close();
-        return refused(address, status);
-    }
-    sockaddr_storage storage{};
-    int length = sizeof storage;
-    uv_tcp_getsockname(m_handle, reinterpret_cast<sockaddr*>(&storage), &length);
-    m_bound = {numberOf(storage), portOf(storage)};
+    m_handle = listening->handle;
+    m_bound = std::move(listening->bound);
     return Done{};
 }
 
@@ -104,17 +61,17 @@ void WebListener::onConnection(uv_stream_t* listener, int status) {
 
 /// libuv does not give a descriptor away, so the taker gets a second one of the same socket.
 void WebListener::accept() {
-    auto* tcp = new uv_tcp_t{};
-    uv_tcp_init(&m_loop, tcp);
-    if (uv_accept(reinterpret_cast<uv_stream_t*>(m_handle), reinterpret_cast<uv_stream_t*>(tcp)) ==
-        0) {
+    auto* const tcp = new uv_tcp_t{};
+    [[maybe_unused]] const int made = uv_tcp_init(&m_loop, tcp);
+    assert(made == 0);  // it makes no socket yet, so there is nothing that could fail
+    if (uv_accept(asStream(m_handle), asStream(tcp)) == 0) {
         int sendBuffer = m_sendBufferBytes;
-        uv_send_buffer_size(reinterpret_cast<uv_handle_t*>(tcp), &sendBuffer);
+        uv_send_buffer_size(asHandle(tcp), &sendBuffer);
         uv_tcp_nodelay(tcp, 1);
         uv_os_fd_t shared = -1;
-        uv_fileno(reinterpret_cast<uv_handle_t*>(tcp), &shared);
-        const int own = fcntl(shared, F_DUPFD_CLOEXEC, 0);
-        if (own >= 0) m_take(own, peerOf(tcp));
+        uv_fileno(asHandle(tcp), &shared);
+        const int descriptor = fcntl(shared, F_DUPFD_CLOEXEC, 0);
+        if (descriptor >= 0) m_take(descriptor, peerOf(tcp));
     }
     closeAndFree(tcp);
 }

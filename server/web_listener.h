@@ -24,7 +24,7 @@ class WebListener {
     /// Takes over a connected, non-blocking socket; `peer` is `visitorOf` its other end.
     using Take = std::function<void(int descriptor, const std::string& peer)>;
 
-    WebListener(uv_loop_t& loop, int sendBufferBytes, Take take);
+    WebListener(uv_loop_t& loop, int backlog, int sendBufferBytes, Take take);
     ~WebListener();
     WebListener(const WebListener&) = delete;
     WebListener& operator=(const WebListener&) = delete;
@@ -40,6 +40,7 @@ class WebListener {
     void accept();
 
     uv_loop_t& m_loop;
+    int m_backlog;
     int m_sendBufferBytes;
     Take m_take;
     uv_tcp_t* m_handle = nullptr;  ///< frees itself once closed
