@@ -47,7 +47,6 @@ class FolderStore final : public LogStore {
     Result<std::vector<std::string>> list() override;
     Result<std::vector<std::string>> everyFile();
     Result<std::vector<std::byte>> read(const std::string& name) override;
-    Status create(const std::string& name) override;
     Status append(const std::string& name, std::span<const std::byte> bytes) override;
     Status sync(const std::string& name) override;
     Status truncate(const std::string& name, std::uint64_t size) override;
@@ -157,12 +156,6 @@ Result<std::vector<std::byte>> FolderStore::read(const std::string& name) {
     }
     bytes.resize(at);
     return bytes;
-}
-
-Status FolderStore::create(const std::string& name) {
-    const Result<Descriptor> file = openFile(name, O_WRONLY | O_CREAT | O_EXCL);
-    if (!file) return file.error();
-    return syncFolder(name);
 }
 
 Status FolderStore::openForAppending(const std::string& name) {

@@ -105,7 +105,7 @@ Status JournalWriter::writeSnapshot(std::uint64_t tick, std::span<const std::byt
     if (!ticks) return ticks.error();
     for (std::size_t i = 0; i + 2 < ticks->size(); ++i) {
         if ((*ticks)[i] == 0) continue;
-        const Status removed = m_store->remove(journal::snapshotName((*ticks)[i]));
+        Status removed = m_store->remove(journal::snapshotName((*ticks)[i]));
         if (!removed) return removed;
     }
     return Done{};

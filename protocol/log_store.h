@@ -20,7 +20,7 @@ class LogStore {
     virtual ~LogStore() = default;
     virtual Result<std::vector<std::string>> list() = 0;  ///< sorted
     virtual Result<std::vector<std::byte>> read(const std::string& name) = 0;
-    virtual Status create(const std::string& name) = 0;  ///< empty; fails if there; folder synced
+    /// To the end of a file that is there.
     virtual Status append(const std::string& name, std::span<const std::byte> bytes) = 0;
     virtual Status sync(const std::string& name) = 0;  ///< data is on disk on return
     virtual Status truncate(const std::string& name, std::uint64_t size) = 0;

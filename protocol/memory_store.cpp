@@ -63,15 +63,6 @@ Result<std::vector<std::byte>> MemoryStore::read(const std::string& name) {
     return (*file)->data;
 }
 
-Status MemoryStore::create(const std::string& name) {
-    if (!isPlainFileName(name)) return Error{"'" + name + "' is not a plain file name"};
-    if (!survives()) return failed(name, "open");
-    if (!m_files.try_emplace(name).second) {
-        return Error{describe(name) + ": cannot open: File exists"};
-    }
-    return Done{};
-}
-
 Status MemoryStore::append(const std::string& name, std::span<const std::byte> bytes) {
     const Result<File*> file = find(name, "open");
     if (!file) return file.error();

@@ -23,7 +23,6 @@ class MemoryStore : public LogStore {
 
     Result<std::vector<std::string>> list() override;
     Result<std::vector<std::byte>> read(const std::string& name) override;
-    Status create(const std::string& name) override;
     Status append(const std::string& name, std::span<const std::byte> bytes) override;
     Status sync(const std::string& name) override;
     Status truncate(const std::string& name, std::uint64_t size) override;

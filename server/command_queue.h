@@ -27,7 +27,7 @@ class CommandQueue {
     /// last command in the world; a queued one raises it.
     Admission push(Command command, std::uint64_t earliest, std::uint64_t lastSequence);
 
-    /// Takes out what is due at `tick`: at most `most` commands and `commandBytes` bytes of all,
+    /// Takes out what is due at `tick`: at most `most` commands and `frameCommandBytes` of all,
     /// and each player's share. Who is served first goes round with the tick: none starves.
     std::vector<Command> take(std::uint64_t tick, std::uint32_t most);
 

@@ -72,6 +72,7 @@ struct Limits {
     std::uint32_t segmentTicks = 36'000;     ///< the journal starts a new file after so many,
     std::uint64_t segmentBytes = 64u << 20;  ///< or when one has reached this size
     std::uint32_t uncommittedTicks = 600;    ///< the disk is behind by more: the session pauses
+    std::size_t drawn = 32'768;              ///< bodies, shapes, contacts, joints each in a view
     std::uint32_t rebuildsWaiting = 4;       ///< ticks asked for and not yet rebuilt
     std::uint32_t rebuiltWorlds = 2;         ///< kept for those who asked
     std::uint32_t catchUpTicks = 4;          ///< late ticks closed at once; the rest is let go

@@ -80,10 +80,14 @@ LogLine& LogLine::with(std::string_view key, std::uint64_t value) {
     return with(key, std::string_view(std::to_string(value)));
 }
 
-LogLine& LogLine::hex(std::string_view key, std::uint64_t value) {
+std::string hexOf(std::uint64_t value) {
     char digits[17];
     std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(value));
-    return with(key, std::string_view(digits));
+    return digits;
+}
+
+LogLine& LogLine::hex(std::string_view key, std::uint64_t value) {
+    return with(key, hexOf(value));
 }
 
 void LogLine::to(const LogSink& sink, Severity severity) const {

@@ -16,6 +16,9 @@ using LogSink = std::function<void(Severity severity, const std::string& line)>;
 /// To standard error through spdlog, with time and severity in front.
 LogSink logToStandardError();
 
+/// 16 digits.
+std::string hexOf(std::uint64_t value);
+
 /// Builds one line: `event=joined session=play player=3`. Values with spaces, quotes or control
 /// bytes are quoted and escaped, so that a client cannot forge a line.
 class LogLine {

@@ -1,13 +1,13 @@
 #include "server/recovery.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 #include <variant>
 
 #include "core/state/hash.h"
 #include "protocol/codec.h"
 #include "protocol/scene_file.h"
+#include "server/log.h"
 
 namespace huestep::server {
 
@@ -15,12 +15,6 @@ namespace {
 
 using protocol::JournalContents;
 using protocol::LogStore;
-
-std::string hexOf(std::uint64_t value) {
-    char digits[17];
-    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(value));
-    return digits;
-}
 
 bool holds(const std::vector<std::string>& names, const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();

@@ -12,9 +12,6 @@ constexpr std::uint8_t asleepFlag = 1;
 constexpr int typeShift = 1;
 constexpr std::uint8_t playersFlag = 8;
 
-/// A view holds at most so many bodies, shapes, contacts and joints: what is beyond is not drawn.
-constexpr std::size_t maxDrawn = 32'768;
-
 std::uint8_t flagsOf(const BodyInfo& body, const BodyMotion& motion, bool players) {
     unsigned flags = static_cast<unsigned>(body.type()) << typeShift;
     if (motion.asleep()) flags |= asleepFlag;
@@ -22,11 +19,11 @@ std::uint8_t flagsOf(const BodyInfo& body, const BodyMotion& motion, bool player
     return static_cast<std::uint8_t>(flags);
 }
 
-void addShapes(const World& world, protocol::View& view) {
+void addShapes(const World& world, std::size_t most, protocol::View& view) {
     for (const ShapeInfo& shape : world.shapes()) {
         const std::optional<std::uint32_t> place = world.find(shape.body);
         if (!place || *place >= view.poses.size()) continue;
-        if (view.shapes.size() == maxDrawn) return;
+        if (view.shapes.size() == most) return;
         protocol::View::Shape drawn;
         drawn.body = *place;
         drawn.kind = shape.shapeKind();
@@ -36,21 +33,21 @@ void addShapes(const World& world, protocol::View& view) {
     }
 }
 
-void addContacts(const World& world, protocol::View& view) {
+void addContacts(const World& world, std::size_t most, protocol::View& view) {
     for (const ContactView& contact : world.contactViews()) {
         if (contact.colour < 0) continue;  // asleep
         for (int i = 0; i < contact.pointCount; ++i) {
-            if (view.contacts.size() == maxDrawn) return;
+            if (view.contacts.size() == most) return;
             view.contacts.push_back({contact.point[static_cast<std::size_t>(i)],
                                      static_cast<std::uint8_t>(std::min(contact.colour, 255))});
         }
     }
 }
 
-void addJoints(const World& world, protocol::View& view) {
+void addJoints(const World& world, std::size_t most, protocol::View& view) {
     const auto motions = world.motions();
     for (const JointInfo& joint : world.joints()) {
-        if (view.joints.size() == maxDrawn) return;
+        if (view.joints.size() == most) return;
         const std::optional<std::uint32_t> a = world.find(joint.bodyA);
         const std::optional<std::uint32_t> b = world.find(joint.bodyB);
         if (!a || !b) continue;
@@ -76,7 +73,7 @@ protocol::View Session::view(bool withShapes) const {
     }
     const auto bodies = m_world.bodies();
     const auto motions = m_world.motions();
-    const std::size_t drawn = std::min(bodies.size(), maxDrawn);
+    const std::size_t drawn = std::min(bodies.size(), m_limits.drawn);
     view.poses.reserve(drawn);
     view.flags.reserve(drawn);
     for (std::size_t i = 0; i < drawn; ++i) {
@@ -86,9 +83,9 @@ protocol::View Session::view(bool withShapes) const {
         view.flags.push_back(flagsOf(bodies[i], motions[i], players));
         if (withShapes) view.bodies.push_back(bodies[i].id);
     }
-    if (withShapes) addShapes(m_world, view);
-    addContacts(m_world, view);
-    addJoints(m_world, view);
+    if (withShapes) addShapes(m_world, m_limits.drawn, view);
+    addContacts(m_world, m_limits.drawn, view);
+    addJoints(m_world, m_limits.drawn, view);
     return view;
 }
 

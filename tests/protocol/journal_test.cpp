@@ -99,7 +99,7 @@ TEST(Journal, KilledAtAnyByteRecoversExactlyTheWholeRecords) {
     std::size_t lastCount = 0;
     for (std::size_t cut = 128; cut <= bytes.size(); ++cut) {
         MemoryStore store;
-        ASSERT_TRUE(store.create(firstSegment).ok());
+        ASSERT_TRUE(store.replace(firstSegment, {}).ok());
         ASSERT_TRUE(store.append(firstSegment, std::span(bytes).first(cut)).ok());
         const auto contents = readJournal(store);
         ASSERT_TRUE(contents.ok()) << cut << ": " << contents.error().message;

@@ -15,7 +15,7 @@ std::vector<std::byte> bytesOf(const std::string& text) {
 TEST(MemoryStore, ACrashKeepsWhatWasSyncedAndAtMostWhatWasWritten) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         MemoryStore store;
-        ASSERT_TRUE(store.create("f").ok());
+        ASSERT_TRUE(store.replace("f", {}).ok());
         ASSERT_TRUE(store.append("f", std::vector<std::byte>(1'000, std::byte{1})).ok());
         ASSERT_TRUE(store.sync("f").ok());
         ASSERT_TRUE(store.append("f", std::vector<std::byte>(3'000, std::byte{2})).ok());
@@ -33,7 +33,7 @@ TEST(MemoryStore, ACrashKeepsWhatWasSyncedAndAtMostWhatWasWritten) {
 
 TEST(MemoryStore, DiesInTheMiddleOfAChangeAndAnswersNothingAfterIt) {
     MemoryStore store;
-    ASSERT_TRUE(store.create("f").ok());
+    ASSERT_TRUE(store.replace("f", {}).ok());
     store.dieAfter(1);
     EXPECT_TRUE(store.append("f", bytesOf("abc")).ok());
     EXPECT_TRUE(store.read("f").ok());
@@ -52,7 +52,7 @@ TEST(MemoryStore, CrashesTearInManyWaysAndTheSameWayForTheSameSeed) {
         std::vector<std::byte> first;
         for (int run = 0; run < 2; ++run) {
             MemoryStore store;
-            ASSERT_TRUE(store.create("f").ok());
+            ASSERT_TRUE(store.replace("f", {}).ok());
             ASSERT_TRUE(store.append("f", std::vector<std::byte>(2'000, std::byte{7})).ok());
             store.crash(seed);
             if (run == 0) first = *store.read("f");
@@ -70,7 +70,7 @@ TEST(MemoryStore, ALyingSyncKeepsNothingSafe) {
     int lost = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         for (MemoryStore* store : {&honest, &liar}) {
-            ASSERT_TRUE(store->create("f" + std::to_string(seed)).ok());
+            ASSERT_TRUE(store->replace("f" + std::to_string(seed), {}).ok());
             ASSERT_TRUE(store->append("f" + std::to_string(seed), bytesOf("abcdefgh")).ok());
             ASSERT_TRUE(store->sync("f" + std::to_string(seed)).ok());
             store->crash(seed);
@@ -84,7 +84,7 @@ TEST(MemoryStore, ALyingSyncKeepsNothingSafe) {
 TEST(MemoryStore, AFullDiskTakesAPartOfAnAppendAndNothingOfAReplace) {
     MemoryStore store;
     store.setCapacity(10);
-    ASSERT_TRUE(store.create("f").ok());
+    ASSERT_TRUE(store.replace("f", {}).ok());
     EXPECT_FALSE(store.append("f", bytesOf("0123456789abc")).ok());
     EXPECT_EQ(*store.read("f"), bytesOf("0123456789"));
     EXPECT_FALSE(store.replace("f", bytesOf("x")).ok());

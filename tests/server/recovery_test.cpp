@@ -222,6 +222,21 @@ TEST(Recovery, NamesThatAreNoPlainFolderAreRefused) {
 
 // The log writer ---------------------------------------------------------------------------------
 
+TEST(Recovery, ASnapshotThatDoesNotRestoreIsNamedByItsFile) {
+    const Scene scene = deskScene();
+    MemoryStore disk;
+    Life life(disk, {}, &scene);
+    ASSERT_TRUE(life.open().ok());
+    life.play(5);
+    // Whole as a file, and no world.
+    ASSERT_TRUE(life.writer->writeSnapshot(5, std::vector<std::byte>(100)).ok());
+    Life again(disk, {}, &scene);
+    const Status opened = again.open();
+    ASSERT_FALSE(opened.ok());
+    EXPECT_EQ(opened.error().message.rfind("memory/snapshot-000000000005.snap: ", 0), 0u)
+        << opened.error().message;
+}
+
 TEST(LogWriter, TellsWhatIsOnDiskAndWritesTheRestAtTheEnd) {
     const Scene scene = deskScene();
     auto store = std::make_unique<MemoryStore>();

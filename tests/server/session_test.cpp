@@ -170,6 +170,20 @@ TEST(Session, TheHostsOwnCommandsTakeNoRoomOfThePlayersInAFrame) {
     }
 }
 
+TEST(Session, AViewHoldsNoMoreOfEachKindThanItsLimit) {
+    Limits limits;
+    limits.drawn = 3;
+    Bench bench(limits);
+    for (int i = 0; i < 120; ++i) bench.close();
+    const protocol::View view = bench.session.view(true);
+    EXPECT_EQ(view.poses.size(), 3u);
+    EXPECT_EQ(view.bodies.size(), 3u);
+    EXPECT_EQ(view.shapes.size(), 3u);
+    EXPECT_LE(view.contacts.size(), 3u);
+    Bench whole;
+    EXPECT_GT(whole.session.view(true).poses.size(), 3u) << "or this shows nothing";
+}
+
 TEST(Session, FramesAreKeptWithinTheirBytes) {
     Limits limits;
     limits.recentBytes = 2'000;
