@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include "core/world/world.h"
@@ -10,6 +11,16 @@ namespace huestep::tools {
 namespace {
 
 constexpr std::uint32_t maxNoise = 60;  // bodies: enough for islands, contacts, joints and sleep
+constexpr float noiseWidth = 200.0f;    // m: fifteen groups of four bodies, 10 m apart
+
+/// Places of the scene's bodies by ascending id.
+std::vector<std::size_t> placesById(const std::vector<BodyId>& ids) {
+    std::vector<std::size_t> places(ids.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    std::sort(places.begin(), places.end(),
+              [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
+    return places;
+}
 
 /// Writes the ids of bodies, joints and shapes into the scene, as a world of it would have them.
 void writeIds(Scene& scene) {
@@ -17,12 +28,10 @@ void writeIds(Scene& scene) {
     const std::vector<JointId> joints = jointIdsOf(scene);
     for (std::size_t i = 0; i < bodies.size(); ++i) scene.bodies[i].id = bodies[i];
     for (std::size_t i = 0; i < joints.size(); ++i) scene.joints[i].id = joints[i];
-    std::vector<std::size_t> byId(bodies.size());
-    std::iota(byId.begin(), byId.end(), std::size_t{0});
-    std::sort(byId.begin(), byId.end(),
-              [&](std::size_t a, std::size_t b) { return bodies[a] < bodies[b]; });
-    ShapeId next = std::max(scene.counters.nextShape, 1u);
-    for (const std::size_t i : byId) {
+    const bool given = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const BodyDef& body) { return body.firstShape != 0; });
+    ShapeId next = given ? 1 : std::max(scene.counters.nextShape, 1u);
+    for (const std::size_t i : placesById(bodies)) {
         BodyDef& body = scene.bodies[i];
         next = std::max(next, body.firstShape);
         body.firstShape = next;
@@ -37,11 +46,30 @@ std::vector<std::uint32_t> permutation(std::size_t count, std::mt19937_64& rando
     return places;
 }
 
-/// Where noise is put: farther to the right than anything of the scene may get to in a run.
-float noiseX(const Scene& scene) {
+/// From a body's origin to its farthest point, whatever its rotation.
+float reachOf(const BodyDef& body) {
+    float reach = 0.0f;
+    for (const ShapeDef& shape : body.shapes)
+        for (std::size_t v = 0; v < shape.vertexCount; ++v)
+            reach = std::max(reach, length(shape.vertices[v]) + shape.radius);
+    return reach;
+}
+
+/// Where noise begins: farther away than anything of the scene may get in a run, to the right or
+/// the left, whichever is nearer to the origin. Nowhere, if the scene fills the world's width.
+std::optional<float> noiseX(const Scene& scene) {
+    constexpr float away = 5000.0f;
+    float left = 0.0f;
     float right = 0.0f;
-    for (const BodyDef& body : scene.bodies) right = std::max(right, body.position.x);
-    return std::min(right + 5000.0f, 0.9f * maxCoordinate);
+    for (const BodyDef& body : scene.bodies) {
+        left = std::min(left, body.position.x - reachOf(body));
+        right = std::max(right, body.position.x + reachOf(body));
+    }
+    const float toTheRight = right + away;
+    const float toTheLeft = left - away - noiseWidth;
+    const float x = toTheRight <= -toTheLeft ? toTheRight : toTheLeft;
+    const bool inside = x >= -maxCoordinate && x + noiseWidth <= maxCoordinate;
+    return inside ? std::optional(x) : std::nullopt;
 }
 
 /// Body k of the noise, in groups of four: a ground, a box that overlaps it, a disc that falls on
@@ -92,28 +120,46 @@ std::vector<std::uint32_t> idsBetween(std::vector<std::uint32_t> taken, std::uin
     return ids;
 }
 
-/// The scene with doubled ids: with c shapes from id s on, a body now has them from 2 s on, so
-/// that 2 s − 1 is free, as the odd id below the body's own is.
+/// The scene with doubled ids: the odd id below a body's own is free, and so is the id below its
+/// first shape, for every body has one shape id more than it has shapes.
 Scene doubled(Scene scene) {
     writeIds(scene);
-    for (BodyDef& body : scene.bodies) {
-        body.id *= 2;
-        body.firstShape *= 2;
+    ShapeId next = 2;
+    for (const std::size_t i : placesById(bodyIdsOf(scene))) {
+        scene.bodies[i].firstShape = next;
+        next += static_cast<ShapeId>(scene.bodies[i].shapes.size()) + 1;
     }
+    for (BodyDef& body : scene.bodies) body.id *= 2;
     for (JointDef& joint : scene.joints) joint.id *= 2;
     scene.counters = {1, 1, 1};
     return scene;
 }
 
 std::uint32_t highestId(const Scene& scene) {
-    Scene written = scene;
-    writeIds(written);
     std::uint32_t highest = 0;
-    for (const BodyDef& body : written.bodies)
-        highest = std::max(
-            {highest, body.id, body.firstShape + static_cast<ShapeId>(body.shapes.size())});
-    for (const JointDef& joint : written.joints) highest = std::max(highest, joint.id);
+    for (const BodyId id : bodyIdsOf(scene)) highest = std::max(highest, id);
+    for (const JointId id : jointIdsOf(scene)) highest = std::max(highest, id);
     return highest;
+}
+
+/// How many bodies of noise, each with a shape, and one joint for every four of them, a world has
+/// room for beside the scene, and one tick has for their removal.
+std::uint32_t noiseCount(const Scene& scene) {
+    std::size_t shapes = 0;
+    for (const BodyDef& body : scene.bodies) shapes += body.shapes.size();
+    const std::size_t room =
+        std::min({caps::maxBodies - scene.bodies.size(), caps::maxShapes - shapes,
+                  4 * (caps::maxJoints - scene.joints.size())});
+    const std::uint32_t most = std::min(maxNoise, scene.limits.commandsPerTick);
+    return static_cast<std::uint32_t>(std::min<std::size_t>(most, room));
+}
+
+/// Limits that leave room for the noise.
+WorldLimits widened(WorldLimits limits, std::uint32_t noise) {
+    limits.bodies = std::min(limits.bodies + noise, caps::maxBodies);
+    limits.shapes = std::min(limits.shapes + noise, caps::maxShapes);
+    limits.joints = std::min(limits.joints + noise, caps::maxJoints);
+    return limits;
 }
 
 }  // namespace
@@ -139,12 +185,18 @@ Scene shuffled(const Scene& given, std::uint64_t seed) {
 Result<NoisePair> withNoise(const Scene& scene) {
     if (highestId(scene) > (caps::maxId - 2 * maxNoise) / 2)
         return Error{"--reorder: the scene's ids are too high to leave room for noise between"};
+    const std::uint32_t count = noiseCount(scene);
+    if (count == 0)
+        return Error{
+            "--reorder: the scene is as large as a world may be, without room "
+            "for noise"};
+    const std::optional<float> x0 = noiseX(scene);
+    if (!x0)
+        return Error{
+            "--reorder: the scene's bodies leave no room for noise to their left or right"};
     NoisePair pair;
     pair.quiet = doubled(scene);
-    const std::uint32_t count = std::min(maxNoise, scene.limits.commandsPerTick);
-    pair.quiet.limits.bodies += count;
-    pair.quiet.limits.shapes += count;
-    pair.quiet.limits.joints += count;
+    pair.quiet.limits = widened(scene.limits, count);
 
     Scene& noisy = pair.noisy = pair.quiet;
     const std::vector<BodyId> bodyIds = idsBetween(bodyIdsOf(noisy), count);
@@ -152,9 +204,8 @@ Result<NoisePair> withNoise(const Scene& scene) {
     std::vector<std::pair<BodyId, ShapeId>> owners;  // of the scene: id and first shape
     for (const BodyDef& body : noisy.bodies) owners.emplace_back(body.id, body.firstShape);
     const auto first = static_cast<std::uint32_t>(noisy.bodies.size());
-    const float x0 = noiseX(scene);
     for (std::uint32_t k = 0; k < count; ++k) {
-        BodyDef body = noiseBody(k, x0);
+        BodyDef body = noiseBody(k, *x0);
         body.id = bodyIds[k];
         for (const auto& [id, shape] : owners)
             if (id == body.id + 1) body.firstShape = shape - 1;

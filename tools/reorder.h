@@ -27,7 +27,8 @@ struct NoisePair {
     std::vector<Command> removal;
 };
 
-/// Requires a checked scene. Fails if its ids are too high to be doubled.
+/// Requires a checked scene. Fails if its ids are too high to be doubled, or if the world has no
+/// room for noise beside it: no free body, or none to the left and right of what is there.
 Result<NoisePair> withNoise(const Scene& scene);
 
 }  // namespace huestep::tools

@@ -148,7 +148,7 @@ std::string nameOfScene(const testing::TestParamInfo<std::string>& info) {
 INSTANTIATE_TEST_SUITE_P(Scenes, History,
                          testing::Values("pyramid:base=12", "many_pyramids:rows=3,columns=3,base=5",
                                          "joint_grid:n=12", "tumbler:count=8", "small", "hinges",
-                                         "mixed", "sandbox"),
+                                         "mixed", "sandbox", "pendulum", "chain"),
                          nameOfScene);
 
 }  // namespace
