@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/box2d/notes.h"
@@ -68,6 +69,45 @@ b2MassData massDataOf(const BodyDef& body) {
     return data;
 }
 
+/// What Box2D would make of a body's inertia: it subtracts m·|c|² from the moment about the body's
+/// origin, in float, and asserts that something is left.
+class InertiaSum {
+ public:
+    /// Of a body whose mass is said as a whole.
+    explicit InertiaSum(const b2MassData& whole)
+        : m_mass(whole.mass), m_moment(whole.I), m_weighted(whole.mass * whole.center) {}
+
+    /// Of a body's fixtures and one more, in the order in which Box2D adds them: newest first.
+    InertiaSum(const b2MassData& newest, const b2Body& body) {
+        add(newest);
+        for (const b2Fixture* f = body.GetFixtureList(); f != nullptr; f = f->GetNext()) {
+            if (f->GetDensity() == 0.0f) continue;
+            b2MassData data;
+            f->GetMassData(&data);
+            add(data);
+        }
+    }
+
+    /// Whether more is left about the centre of mass than the rounding of what is subtracted.
+    [[nodiscard]] bool survives() const {
+        constexpr float rounding = 4.0f * std::numeric_limits<float>::epsilon();
+        if (!(m_mass > 0.0f) || !(m_moment > 0.0f)) return true;  // Box2D asks no more of it
+        const b2Vec2 center = (1.0f / m_mass) * m_weighted;
+        const float shifted = m_mass * b2Dot(center, center);
+        return m_moment - shifted > rounding * shifted;
+    }
+
+ private:
+    void add(const b2MassData& data) {
+        m_mass += data.mass;
+        m_moment += data.I;
+        m_weighted += data.mass * data.center;
+    }
+    float m_mass = 0.0f;
+    float m_moment = 0.0f;
+    b2Vec2 m_weighted{0.0f, 0.0f};
+};
+
 /// Builds one `b2World`; every `bool` member says whether it succeeded, `m_error` why not.
 class Builder {
  public:
@@ -80,8 +120,14 @@ class Builder {
     bool addBody(std::size_t place);
     bool addShape(const ShapeDef& shape, const std::string& path, b2Body& body, bool& exact);
     bool addPolygon(const ShapeDef& shape, const std::string& path, b2Body& body, bool& exact);
-    void addCapsule(const ShapeDef& shape, const std::string& path, b2Body& body);
-    void addFixture(const ShapeDef& shape, const b2Shape& b2shape, b2Body& body);
+    bool addCapsule(const ShapeDef& shape, const std::string& path, b2Body& body);
+    bool addFixture(const ShapeDef& shape, const b2Shape& b2shape, const std::string& path,
+                    b2Body& body);
+    bool failOfInertia(const std::string& path) {
+        return fail(path,
+                    "lies so far from its body's origin for its size that Box2D's arithmetic "
+                    "leaves it no inertia");
+    }
     void addJoint(std::size_t place);
     b2Joint* addRevolute(const JointDef& joint, const std::string& path);
     b2Joint* addDistance(const JointDef& joint, const std::string& path);
@@ -147,6 +193,8 @@ bool Builder::addBody(std::size_t place) {
     }
     if (!exact && body.type == BodyType::Dynamic) {
         const b2MassData mass = massDataOf(body);
+        const bool turns = !body.fixedRotation;
+        if (turns && !InertiaSum(mass).survives()) return failOfInertia(pathOf("bodies", place));
         created->SetMassData(&mass);
     }
     // Only now: each fixture moves the centre of mass, whose velocity the scene gives.
@@ -177,19 +225,16 @@ bool Builder::addShape(const ShapeDef& shape, const std::string& path, b2Body& b
             b2CircleShape circle;
             circle.m_p = toB2(shape.vertices[0]);
             circle.m_radius = shape.radius;
-            addFixture(shape, circle, body);
-            return true;
+            return addFixture(shape, circle, path, body);
         }
         case ShapeKind::Segment: {
             b2EdgeShape edge;
             edge.SetTwoSided(toB2(shape.vertices[0]), toB2(shape.vertices[1]));
-            addFixture(shape, edge, body);
-            return true;
+            return addFixture(shape, edge, path, body);
         }
         case ShapeKind::Capsule:
             exact = false;
-            addCapsule(shape, path, body);
-            return true;
+            return addCapsule(shape, path, body);
         case ShapeKind::Polygon:
             return addPolygon(shape, path, body, exact);
     }
@@ -224,11 +269,10 @@ bool Builder::addPolygon(const ShapeDef& shape, const std::string& path, b2Body&
     }
     b2PolygonShape polygon;
     polygon.Set(points.data(), static_cast<int32>(count));
-    addFixture(shape, polygon, body);
-    return true;
+    return addFixture(shape, polygon, path, body);
 }
 
-void Builder::addCapsule(const ShapeDef& shape, const std::string& path, b2Body& body) {
+bool Builder::addCapsule(const ShapeDef& shape, const std::string& path, b2Body& body) {
     m_notes.add(path, "a capsule is two circles and a box in Box2D 2.4");
     const Vec2 a = shape.vertices[0];
     const Vec2 b = shape.vertices[1];
@@ -236,19 +280,25 @@ void Builder::addCapsule(const ShapeDef& shape, const std::string& path, b2Body&
     end.m_radius = shape.radius;
     for (const Vec2 center : {a, b}) {
         end.m_p = toB2(center);
-        addFixture(shape, end, body);
+        if (!addFixture(shape, end, path, body)) return false;
     }
     const float halfLength = 0.5f * length(b - a);
     // A box that Box2D would weld adds nothing to the circles that a person could see.
-    if (halfLength < b2_linearSlop || shape.radius < b2_linearSlop) return;
+    if (halfLength < b2_linearSlop || shape.radius < b2_linearSlop) return true;
     const Vec2 along = normalized(b - a);
     b2PolygonShape middle;
     middle.SetAsBox(halfLength, shape.radius, toB2(0.5f * (a + b)),
                     angleOf(Rotation{along.x, along.y}));
-    addFixture(shape, middle, body);
+    return addFixture(shape, middle, path, body);
 }
 
-void Builder::addFixture(const ShapeDef& shape, const b2Shape& b2shape, b2Body& body) {
+bool Builder::addFixture(const ShapeDef& shape, const b2Shape& b2shape, const std::string& path,
+                         b2Body& body) {
+    if (shape.density > 0.0f && body.GetType() == b2_dynamicBody && !body.IsFixedRotation()) {
+        b2MassData mass;
+        b2shape.ComputeMass(&mass, shape.density);
+        if (!InertiaSum(mass, body).survives()) return failOfInertia(path);
+    }
     b2FixtureDef def;
     def.shape = &b2shape;
     def.density = shape.density;
@@ -258,6 +308,7 @@ void Builder::addFixture(const ShapeDef& shape, const b2Shape& b2shape, b2Body& 
     def.filter.maskBits = static_cast<uint16>(shape.filter.mask & 0xffffu);
     def.filter.groupIndex = static_cast<int16>(shape.filter.group);
     body.CreateFixture(&def);
+    return true;
 }
 
 void Builder::addJoint(std::size_t place) {

@@ -39,7 +39,10 @@ struct B2World {
 };
 
 /// The scene must have passed `check`. Fails, with a path, for polygons that Box2D's hull would
-/// weld or flatten (vertices within 2.5 mm, area under 1e-6 m²) and for filters beyond 16 bits.
+/// weld or flatten (vertices within 2.5 mm, area under 1e-6 m²), for filters beyond 16 bits, and
+/// for dynamic bodies whose shapes lie so far from the origin that Box2D, which takes the moment of
+/// inertia about the origin in float first, is left with none about the centre of mass (a disc of
+/// radius r at more than about 1000 r).
 Result<B2World> makeB2World(const Scene& scene, const BuildOrder& order = {});
 
 /// A scene with what a `b2World` holds now, bodies and joints in the order of their creation.

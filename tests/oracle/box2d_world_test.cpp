@@ -187,6 +187,45 @@ TEST(Box2DWorld, RefusesWhatBox2DWouldFlatten) {
               "bodies[0].shapes[0].filter: Box2D's categories have 16 bits");
 }
 
+TEST(Box2DWorld, RefusesABodyThatWouldHaveNoInertiaThere) {
+    // Box2D 2.4 asserts I − m·|c|² > 0 in float: 0.125 of 4,000,000 is less than half an ulp.
+    Scene scene;
+    scene.bodies.push_back(bodyOf(BodyType::Dynamic, {}, ShapeDef::circle({2000.0f, 0.0f}, 0.5f)));
+    ASSERT_TRUE(check(scene).ok());
+    const std::string sentence =
+        "lies so far from its body's origin for its size that Box2D's arithmetic leaves it no "
+        "inertia";
+    EXPECT_EQ(makeB2World(scene).error().message, "bodies[0].shapes[0]: " + sentence);
+    // A capsule's body gets the mass of the exact shape, by another way.
+    for (const float x : {300.0f, 1000.0f, 3000.0f, 9000.0f}) {
+        scene.bodies[0].shapes = {ShapeDef::capsule({x, 0.0f}, {x + 0.1f, 0.0f}, 0.05f)};
+        ASSERT_TRUE(check(scene).ok());
+        const Result<B2World> made = makeB2World(scene);
+        ASSERT_FALSE(made.ok()) << x;
+        EXPECT_TRUE(made.error().message.ends_with(sentence)) << made.error().message;
+    }
+    // What needs no inertia is made: a body that does not turn, or is not pushed.
+    scene.bodies[0].shapes = {ShapeDef::circle({2000.0f, 0.0f}, 0.5f)};
+    scene.bodies[0].fixedRotation = true;
+    EXPECT_TRUE(makeB2World(scene).ok());
+    scene.bodies[0].fixedRotation = false;
+    scene.bodies[0].type = BodyType::Kinematic;
+    EXPECT_TRUE(makeB2World(scene).ok());
+}
+
+TEST(Box2DWorld, IsMadeOrRefusedForDiscsAtAnyDistance) {
+    for (float x = 1.0f; x < 10'000.0f; x *= 1.25f)
+        for (const float radius : {0.001f, 0.1f, 0.5f, 10.0f}) {
+            Scene scene;
+            scene.bodies.push_back(
+                bodyOf(BodyType::Dynamic, {}, ShapeDef::circle({x, -x}, radius)));
+            scene.bodies[0].shapes.push_back(ShapeDef::circle({x + radius, -x}, radius));
+            const bool made = makeB2World(scene).ok();
+            if (std::hypot(x, x) < 500.0f * radius) EXPECT_TRUE(made) << x << ", " << radius;
+            if (std::hypot(x, x) > 5'000.0f * radius) EXPECT_FALSE(made) << x << ", " << radius;
+        }
+}
+
 TEST(Box2DWorld, IsNotedWhereHuestepHasNoSuchThing) {
     b2World world({0.0f, -10.0f});
     b2BodyDef def;
