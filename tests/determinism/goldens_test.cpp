@@ -1,8 +1,9 @@
 // Whole runs against hashes that are kept: any change of any bit of any tick shows here.
 //
 // Where results change on purpose, mint again and say why; the words end up in the file:
-//   HUESTEP_MINT="why the results changed" build/bin/test_determinism --gtest_filter='*Golden*'
-// (HUESTEP_MINT=1 mints without words.) A missing golden is a failure.
+//   HUESTEP_MINT="why the results changed" build/release/bin/test_determinism
+//     --gtest_filter='*Golden*'
+// A missing golden is a failure, and so is one minted without saying why.
 
 #include <algorithm>
 #include <cctype>
@@ -95,7 +96,7 @@ void writeGoldens(const std::map<std::string, Golden>& all) {
     std::ofstream file(fileName());
     file << "# Full root and motion root of whole runs, the same for every machine, compiler,\n"
             "# thread count and SIMD width. Read and written by goldens_test.cpp; to mint again:\n"
-            "#   HUESTEP_MINT=\"why the results changed\" build/bin/test_determinism "
+            "#   HUESTEP_MINT=\"why the results changed\" build/release/bin/test_determinism "
             "--gtest_filter='*Golden*'\n";
     for (const GoldenRun& run : goldenRuns()) {
         const auto golden = all.find(run.scene);
@@ -130,11 +131,18 @@ bool allAsleep(const World& world) {
     return true;
 }
 
+/// Whether the text says why: in words, of which a sentence has a few.
+bool saysWhy(const std::string& text) {
+    return std::count(text.begin(), text.end(), ' ') >= 1 && text != "without words";
+}
+
 class GoldenHashes : public testing::TestWithParam<GoldenRun> {};
 
 TEST_P(GoldenHashes, AreThoseOfEveryConfiguration) {
     const GoldenRun& golden = GetParam();
     const char* mint = std::getenv("HUESTEP_MINT");
+    ASSERT_TRUE(mint == nullptr || saysWhy(mint))
+        << "HUESTEP_MINT='" << mint << "' does not say why the results changed";
 #ifdef NDEBUG
     const bool whole = true;
 #else
@@ -158,9 +166,7 @@ TEST_P(GoldenHashes, AreThoseOfEveryConfiguration) {
     std::map<std::string, Golden> all = readGoldens();
     if (mint != nullptr) {
         Golden& kept = all[golden.scene];
-        if (kept.hashes != found) {
-            kept.minted = std::string(mint) == "1" ? "without words" : mint;
-        }
+        if (kept.hashes != found) kept.minted = mint;
         kept.hashes = found;
         writeGoldens(all);
         return;
@@ -182,6 +188,16 @@ std::string nameOfRun(const testing::TestParamInfo<GoldenRun>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, GoldenHashes, testing::ValuesIn(goldenRuns()), nameOfRun);
+
+TEST(GoldenRuns, SayWhyTheyWereMintedLast) {
+    const std::map<std::string, Golden> all = readGoldens();
+    for (const GoldenRun& run : goldenRuns()) {
+        ASSERT_TRUE(all.contains(run.scene)) << run.scene;
+        EXPECT_TRUE(saysWhy(all.at(run.scene).minted)) << run.scene;
+    }
+    EXPECT_FALSE(saysWhy("1"));
+    EXPECT_FALSE(saysWhy(""));
+}
 
 TEST(GoldenRuns, ReachThreadsBarriersAndBatches) {
     // If thresholds move, the scenes above have to grow with them, or they guard nothing.
