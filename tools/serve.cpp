@@ -7,6 +7,7 @@
 #include "server/web_endpoint.h"
 #include "tools/command.h"
 #include "tools/fingerprint.h"
+#include "tools/interrupt.h"
 #include "tools/scene_source.h"
 #include "tools/serve_config.h"
 
@@ -40,10 +41,21 @@ Result<server::HostConfig> configOf(const ServeOptions& options) {
     return config;
 }
 
+/// Ends a host by a signal that comes before the host's loop has handlers of its own.
+class StopHost final : public InterruptHook {
+ public:
+    explicit StopHost(server::Host& host) : m_host(host) {}
+    void interrupt() override { m_host.stop(); }
+
+ private:
+    server::Host& m_host;
+};
+
 Answer serve(ServeOptions options) {
     if (const Status filled = fillFromFile(options); !filled) return filled.error();
     Result<server::HostConfig> config = configOf(options);
     if (!config) return config.error();
+    if (interrupted()) return Exit::Done;
     const bool open = config->open;
     Result<std::unique_ptr<server::Host>> host = server::Host::open(std::move(config).value());
     if (!host) return host.error();
@@ -60,6 +72,8 @@ Answer serve(ServeOptions options) {
     std::printf("listening on %s\n", (*host)->address().c_str());
     if (!page.empty()) std::printf("page %s\n", page.c_str());
     std::fflush(stdout);
+    StopHost stop(**host);
+    const HookedInterrupt hooked(stop);
     const Status ended = (*host)->run();
     if (ended) return Exit::Done;
     std::fprintf(stderr, "huestep: %s\n", ended.error().message.c_str());

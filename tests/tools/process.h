@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -75,6 +76,20 @@ class Process {
 
     void send(int signal) const {
         if (!m_status && m_pid > 0) ::kill(m_pid, signal);
+    }
+
+    /// Waits until the program has a handler of its own for a signal, as /proc shows it.
+    [[nodiscard]] bool catches(int signal, double seconds) const {
+        const std::string status = "/proc/" + std::to_string(m_pid) + "/status";
+        return until(seconds, [&] {
+            std::istringstream lines(textOf(status));
+            for (std::string line; std::getline(lines, line);) {
+                if (!line.starts_with("SigCgt:")) continue;
+                const std::uint64_t caught = std::strtoull(line.c_str() + 7, nullptr, 16);
+                return ((caught >> (signal - 1)) & 1) != 0;
+            }
+            return false;
+        });
     }
 
     [[nodiscard]] std::string out() const { return textOf(m_folder / "out"); }
