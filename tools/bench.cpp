@@ -5,7 +5,9 @@
 /// because measuring between ticks would empty the caches that the ticks are timed with.
 #include "tools/bench.h"
 
+#include <cstdio>
 #include <memory>
+#include <set>
 
 #include "tools/clock.h"
 #include "tools/command.h"
@@ -15,6 +17,7 @@
 #include "tools/lists.h"
 #include "tools/progress.h"
 #include "tools/scene_source.h"
+#include "tools/whole_number.h"
 
 namespace huestep::tools {
 namespace {
@@ -59,7 +62,8 @@ std::vector<BenchResult> rowsOf(const NamedScene& scene, std::uint64_t ticks,
 Status measureErrors(const NamedScene& scene, BenchResult& row, Progress& progress) {
     const Result<World> start = World::create(scene.scene);
     if (!start) return Error{scene.name + ": " + start.error().message};
-    Result<std::unique_ptr<Engine>> engine = makeEngine(row.engine, scene.scene, {row.threads});
+    Result<std::unique_ptr<Engine>> engine =
+        makeEngine(row.engine, scene.scene, {row.threads}, &row.notes);
     if (!engine) return engine.error();
     Accuracy accuracy(*start);
     for (std::uint64_t tick = 1; tick <= row.ticks && !interrupted(); ++tick) {
@@ -101,6 +105,16 @@ Status benchScene(const NamedScene& scene, int repeats, std::vector<BenchResult>
     return Done{};
 }
 
+/// What an engine leaves out of a scene is said once, however many rows it has.
+void showNotes(const std::vector<BenchResult>& rows) {
+    std::set<std::string> said;
+    for (const BenchResult& row : rows)
+        for (const std::string& note : row.notes) {
+            const std::string line = row.scene + " on " + row.engine + ": " + note;
+            if (said.insert(line).second) std::fprintf(stderr, "note: %s\n", line.c_str());
+        }
+}
+
 Answer bench(const Options& options) {
     const Result<std::vector<int>> threads = parseThreads(options.threads);
     if (!threads) return threads.error();
@@ -113,6 +127,9 @@ Answer bench(const Options& options) {
         scenes.push_back(std::move(scene).value());
     }
 
+    Result<OutputFile> csvFile = OutputFile::open(options.csv);
+    if (!csvFile) return csvFile.error();
+
     std::vector<BenchResult> results;
     bool same = true;
     for (const NamedScene& scene : scenes) {
@@ -122,20 +139,19 @@ Answer bench(const Options& options) {
         if (!done) return done.error();
         // A scene that Ctrl-C cut short has no figures worth showing; those before it have.
         if (interrupted()) break;
+        showNotes(rows);
         for (BenchResult& row : rows) {
             same = same && row.sameHash;
             results.push_back(std::move(row));
         }
     }
-    if (!options.csv.empty()) {
-        const std::string csv = benchCsv(results);
-        const Status written = writeFile(options.csv, std::as_bytes(std::span(csv)));
-        if (!written) return written.error();
-    }
     if (options.json)
         print(benchJson(results));
     else
         printBench(results);
+    const std::string csv = benchCsv(results);
+    const Status written = csvFile->write(std::as_bytes(std::span(csv)));
+    if (!written) return written.error();
     return same && !interrupted() ? Exit::Done : Exit::Differs;
 }
 
@@ -152,9 +168,9 @@ void addBench(Menu& menu) {
     for (const std::string& name : benchEngineNames()) names += (names.empty() ? "" : ", ") + name;
     sub->add_option("--engine", o->engines, "Of " + names + " (default: huestep,box2d)");
     sub->add_option("--ticks", o->ticks, "Steps to take (default: each scene's own)")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+        ->transform(wholeNumber(1, 1'000'000));
     sub->add_option("--repeat", o->repeats, "Timed runs of each row (default: 6)")
-        ->check(CLI::Range(1, 1000));
+        ->transform(wholeNumber(1, 1000));
     sub->add_option("--csv", o->csv, "Also write the rows to this file");
     sub->add_flag("--json", o->json, "Print one JSON document");
 }

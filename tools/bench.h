@@ -21,6 +21,7 @@ struct BenchResult {
     std::uint64_t hash = 0;                  ///< of all motions at the end
     bool sameHash = true;                    ///< every repeat ended with it
     AccuracyResult errors;
+    std::vector<std::string> notes;  ///< what the engine leaves out or approximates
 
     /// Sum over ticks of the least time of each, divided by the ticks, ms: what the engine needs
     /// when nothing else disturbs the machine.

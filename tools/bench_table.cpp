@@ -39,6 +39,8 @@ Json benchJson(const std::vector<BenchResult>& results) {
                           {"q3", quantile(r.repeats, 0.75)},
                           {"psm", r.psm()}}},
                         {"hash", hex(r.hash)},
+                        {"same_hash", r.sameHash},
+                        {"notes", r.notes},
                         {"max_penetration_m", r.errors.maxPenetration},
                         {"max_joint_error_m", r.errors.maxJointError},
                         {"accuracy", asJson(r.errors)}});

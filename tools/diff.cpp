@@ -1,5 +1,6 @@
 /// `huestep diff`: the first difference of two snapshots or of two journals.
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "tools/command.h"
@@ -98,6 +99,11 @@ Result<Finding> compareStories(const Story& left, const Story& right) {
 }
 
 Result<Finding> find(const std::string& a, const std::string& b) {
+    for (const std::string& path : {a, b}) {
+        std::error_code wrong;
+        if (!std::filesystem::exists(path, wrong))
+            return Error{path + ": there is no such file or folder"};
+    }
     if (looksLikeJournal(a) != looksLikeJournal(b))
         return Error{"a snapshot and a journal cannot be compared; give two of a kind"};
     if (looksLikeJournal(a)) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 namespace huestep::tools {
 
@@ -21,12 +22,31 @@ Result<std::vector<std::byte>> readFile(const std::string& path, std::size_t lim
     return bytes;
 }
 
-Status writeFile(const std::string& path, std::span<const std::byte> bytes) {
-    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+Result<OutputFile> OutputFile::open(const std::string& path) {
+    if (path.empty()) return OutputFile("", false);
+    std::error_code wrong;
+    const bool made = !std::filesystem::exists(path, wrong);
+    const std::ofstream probe(path, std::ios::binary | std::ios::app);
+    if (!probe) return Error{path + ": cannot be written"};
+    return OutputFile(path, made);
+}
+
+OutputFile::~OutputFile() {
+    std::error_code ignored;
+    if (m_made) std::filesystem::remove(m_path, ignored);
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : m_path(std::move(other.m_path)), m_made(std::exchange(other.m_made, false)) {}
+
+Status OutputFile::write(std::span<const std::byte> bytes) {
+    if (!named()) return Done{};
+    m_made = false;
+    std::ofstream out(m_path, std::ios::binary | std::ios::trunc);
     out.write(reinterpret_cast<const char*>(bytes.data()),
               static_cast<std::streamsize>(bytes.size()));
     out.close();
-    if (!out) return Error{path + ": cannot be written"};
+    if (!out) return Error{m_path + ": cannot be written"};
     return Done{};
 }
 

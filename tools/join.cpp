@@ -9,7 +9,9 @@
 #include "tools/clock.h"
 #include "tools/command.h"
 #include "tools/fingerprint.h"
+#include "tools/interrupt.h"
 #include "tools/text.h"
+#include "tools/whole_number.h"
 
 namespace huestep::tools {
 namespace {
@@ -113,6 +115,7 @@ Answer join(const Options& options) {
     config.fingerprint = *fingerprint;
     config.bot = std::move(bot).value();
     config.ticks = options.ticks;
+    config.stop = &interruptFlag();  // signals that come before the client has handlers of its own
     if (terminal) config.onProgress = showProgress;
     config.onNotice = [terminal](const std::string& sentence) {
         std::fprintf(stderr, "%s%s\n", terminal ? "\r\033[K" : "", sentence.c_str());
@@ -140,7 +143,7 @@ void addJoin(Menu& menu) {
     sub->add_option("--session", o->session, "Which session to play")->required();
     sub->add_option("--bot", o->bot, "wander, idle or script:FILE (default: wander)");
     sub->add_option("--ticks", o->ticks, "Leave after so many ticks (default: at Ctrl-C)")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+        ->transform(wholeNumber(1, 1'000'000'000));
     sub->add_flag("--json", o->json, "Print one JSON document");
 }
 

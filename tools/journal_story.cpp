@@ -1,9 +1,12 @@
 #include "tools/journal_story.h"
 
-#include <charconv>
+#include <cstring>
 #include <filesystem>
+#include <string_view>
 
+#include "protocol/bytes.h"
 #include "protocol/journal.h"
+#include "protocol/journal_format.h"
 #include "protocol/scene_file.h"
 #include "tools/files.h"
 
@@ -12,18 +15,18 @@ namespace {
 
 constexpr std::size_t maxSnapshotBytes = std::size_t{1} << 30;
 const std::string sceneFile = "scene.bin";
-const std::string snapshotPrefix = "snapshot-";
-const std::string snapshotSuffix = ".snap";
+constexpr std::string_view journalMark = "HSTEPSNP";  // of a snapshot as a journal wraps it
+constexpr std::size_t tickOffset = 16;                // in its header
 
-/// The tick in `snapshot-TICK.snap`.
-std::optional<std::uint64_t> tickOfSnapshot(const std::string& name) {
-    if (!name.starts_with(snapshotPrefix) || !name.ends_with(snapshotSuffix)) return std::nullopt;
-    const char* const begin = name.data() + snapshotPrefix.size();
-    const char* const end = name.data() + name.size() - snapshotSuffix.size();
-    std::uint64_t tick = 0;
-    const auto [stop, wrong] = std::from_chars(begin, end, tick);
-    if (wrong != std::errc{} || stop != end) return std::nullopt;
-    return tick;
+bool beginsWith(std::span<const std::byte> bytes, std::string_view mark) {
+    return bytes.size() >= mark.size() && std::memcmp(bytes.data(), mark.data(), mark.size()) == 0;
+}
+
+/// The tick that a journal's snapshot must be of: that of its name, if it has one, or its own word.
+std::uint64_t tickOf(const std::string& path, std::span<const std::byte> bytes) {
+    const std::string name = std::filesystem::path(path).filename().string();
+    if (const auto tick = protocol::journal::tickOfSnapshot(name)) return *tick;
+    return bytes.size() < tickOffset + 8 ? 0 : protocol::load<std::uint64_t>(bytes, tickOffset);
 }
 
 Result<World> worldOfScene(const std::string& folder) {
@@ -44,7 +47,7 @@ Result<World> startWorld(protocol::LogStore& store, const std::string& folder, s
     if (!names) return names.error();
     std::optional<std::uint64_t> best;
     for (const std::string& name : *names) {
-        const std::optional<std::uint64_t> tick = tickOfSnapshot(name);
+        const std::optional<std::uint64_t> tick = protocol::journal::tickOfSnapshot(name);
         if (tick && *tick <= from && (!best || *tick > *best)) {
             best = tick;
             source = name;
@@ -98,22 +101,13 @@ Status cutAt(const std::string& folder, std::uint64_t from, std::optional<std::u
 }  // namespace
 
 Result<World> loadSnapshot(const std::string& path) {
-    const Result<std::vector<std::byte>> bytes = readFile(path, maxSnapshotBytes);
+    Result<std::vector<std::byte>> bytes = readFile(path, maxSnapshotBytes);
     if (!bytes) return bytes.error();
-    // A journal's snapshot has a wrapping of its own, which its name announces.
-    const std::filesystem::path file(path);
-    const std::optional<std::uint64_t> tick = tickOfSnapshot(file.filename().string());
-    if (!tick) {
-        Result<World> world = World::restore(*bytes);
-        if (!world) return Error{path + ": " + world.error().message};
-        return world;
-    }
-    const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-    const Result<std::unique_ptr<protocol::LogStore>> store = protocol::openFolder(folder);
-    if (!store) return store.error();
-    const Result<std::vector<std::byte>> image = protocol::readSnapshot(**store, *tick);
-    if (!image) return image.error();
-    Result<World> world = World::restore(*image);
+    // A journal wraps its snapshots; which form this is, the file says and not its name.
+    if (beginsWith(*bytes, journalMark))
+        bytes = protocol::journal::unwrapSnapshot(tickOf(path, *bytes), *bytes);
+    if (!bytes) return Error{path + ": " + bytes.error().message};
+    Result<World> world = World::restore(*bytes);
     if (!world) return Error{path + ": " + world.error().message};
     return world;
 }

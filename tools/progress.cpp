@@ -17,6 +17,10 @@ Progress::Progress(std::string what, std::uint64_t total)
     : m_what(std::move(what)), m_total(total), m_shown(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
+    clear();
+}
+
+void Progress::clear() const {
     if (m_shown) std::fputs("\r\033[K", stderr);
 }
 

@@ -17,6 +17,7 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     void advance(std::uint64_t steps = 1);
+    void clear() const;  ///< until the next drawing: for a line of text in its place
 
  private:
     void draw(std::uint64_t done);

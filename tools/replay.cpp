@@ -9,6 +9,7 @@
 #include "tools/journal_story.h"
 #include "tools/progress.h"
 #include "tools/text.h"
+#include "tools/whole_number.h"
 
 namespace huestep::tools {
 namespace {
@@ -99,6 +100,8 @@ void printText(const JournalStory& journal, const World& world, const Replay& re
     else if (world.tick() != journal.story.end)
         std::printf("stopped before the end; %llu recorded hashes were equal\n",
                     number(replay.compared));
+    else if (replay.compared == 0)
+        std::printf("nothing was compared: the journal has no recorded hash of these ticks\n");
     else
         std::printf("equal: %llu recorded hashes, mismatches: 0\n", number(replay.compared));
 }
@@ -106,19 +109,19 @@ void printText(const JournalStory& journal, const World& world, const Replay& re
 Answer replayLog(const Options& options) {
     const Result<JournalStory> journal = loadJournal(options.log, options.from, options.to);
     if (!journal) return journal.error();
+    Result<OutputFile> snapshot = OutputFile::open(options.snapshot);
+    if (!snapshot) return snapshot.error();
     Playback playback(journal->story, {options.threads, Simd::Auto, 0, 0});
     Replay replay;
     if (const Status played = play(journal->story, playback, replay); !played)
         return played.error();
     const World& world = playback.world();
-    if (!options.snapshot.empty()) {
-        const Status written = writeFile(options.snapshot, world.save());
-        if (!written) return written.error();
-    }
     if (options.json)
         print(asJson(options, *journal, world, replay));
     else
         printText(*journal, world, replay);
+    if (snapshot->named())
+        if (const Status written = snapshot->write(world.save()); !written) return written.error();
     return replay.differsAt || world.tick() != journal->story.end ? Exit::Differs : Exit::Done;
 }
 
@@ -131,10 +134,12 @@ void addReplay(Menu& menu) {
                  "huestep replay huestep-data/play --threads 8", [o] { return replayLog(*o); });
     sub->add_option("LOG", o->log, "The folder of a journal")->required();
     sub->add_option("--from", o->from,
-                    "Start at the newest snapshot that is not after this tick (default: 0)");
-    sub->add_option("--to", o->to, "Stop at this tick (default: the end)");
+                    "Start at the newest snapshot that is not after this tick (default: 0)")
+        ->transform(wholeNumber(0));
+    sub->add_option("--to", o->to, "Stop at this tick (default: the end)")
+        ->transform(wholeNumber(0));
     sub->add_option("--threads", o->threads, "Threads, 1 to 64 (default: 1)")
-        ->check(CLI::Range(1, maxThreads));
+        ->transform(wholeNumber(1, maxThreads));
     sub->add_option("--snapshot", o->snapshot, "Write the state at the end to this file");
     sub->add_flag("--json", o->json, "Print one JSON document");
 }

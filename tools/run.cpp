@@ -12,9 +12,12 @@
 #include "tools/progress.h"
 #include "tools/run_report.h"
 #include "tools/scene_source.h"
+#include "tools/whole_number.h"
 
 namespace huestep::tools {
 namespace {
+
+constexpr std::uint64_t maxJsonHashes = 1'000'000;  // they are kept until the end
 
 struct Options {
     std::string scene;
@@ -31,6 +34,8 @@ struct Options {
 Status checkOptions(const Options& o) {
     if (const Status known = checkEngine(o.engine, engineNames()); !known) return known;
     if (o.engine == "huestep") return Done{};
+    if (o.substeps != 0)
+        return Error{"--substeps: " + o.engine + " takes 8 velocity and 3 position iterations"};
     if (o.threads != 1 || o.simd != "auto")
         return Error{"--threads and --simd: " + o.engine +
                      " has one thread and its own arithmetic"};
@@ -47,17 +52,33 @@ void stepAll(Engine& engine, const Options& options, Accuracy& accuracy, RunRepo
     while (report.ticks < report.ticksAsked && !interrupted()) {
         const std::uint64_t begin = nanoseconds();
         engine.step();
-        report.tickNanoseconds.push_back(nanoseconds() - begin);
+        report.tickNanoseconds.add(nanoseconds() - begin);
         ++report.ticks;
         motions = engine.motions();
         accuracy.watch(report.ticks, motions, engine.contactCount() > 0);
         if (huestep != nullptr) report.add(huestep->world().report());
-        if (options.hashEvery != 0 && report.ticks % options.hashEvery == 0)
-            report.hashes.push_back(
-                {report.ticks, engine.hash(), huestep ? huestep->world().fullRoot() : 0});
+        if (options.hashEvery != 0 && report.ticks % options.hashEvery == 0) {
+            const RunReport::TickHash hash{report.ticks, engine.hash(),
+                                           huestep ? huestep->world().fullRoot() : 0};
+            progress.clear();
+            if (options.json)
+                report.hashes.push_back(hash);
+            else
+                RunReport::print(hash, huestep != nullptr);
+        }
         progress.advance();
     }
     report.accuracy = accuracy.finish(motions);
+}
+
+Status checkHashes(std::uint64_t every, std::uint64_t ticks, bool json) {
+    if (every > ticks)
+        return Error{"--hash-every: " + std::to_string(every) + " is more than the " +
+                     std::to_string(ticks) + " ticks of the run"};
+    if (json && every != 0 && ticks / every > maxJsonHashes)
+        return Error{"--hash-every: one JSON document takes " + std::to_string(maxJsonHashes) +
+                     " hashes at most; without --json they are printed as they come"};
+    return Done{};
 }
 
 Answer run(const Options& options) {
@@ -68,6 +89,11 @@ Answer run(const Options& options) {
     if (!named) return named.error();
     Scene& scene = named->scene;
     if (options.substeps != 0) scene.substeps = options.substeps;
+    const std::uint64_t ticks = options.ticks != 0 ? options.ticks : named->ticks;
+    if (const Status fine = checkHashes(options.hashEvery, ticks, options.json); !fine)
+        return fine.error();
+    Result<OutputFile> snapshot = OutputFile::open(options.snapshot);
+    if (!snapshot) return snapshot.error();
 
     const Result<World> start = World::create(scene);
     if (!start) return Error{options.scene + ": " + start.error().message};
@@ -82,21 +108,18 @@ Answer run(const Options& options) {
     report.engine = options.engine;
     report.threads = options.threads;
     report.simd = std::string(nameOf(*simd));
-    report.ticksAsked = options.ticks != 0 ? options.ticks : named->ticks;
-    report.stepSeconds = static_cast<double>(scene.stepSeconds);
+    report.ticksAsked = ticks;
     Accuracy accuracy(*start);
     stepAll(**engine, options, accuracy, report);
     report.close(**engine);
 
-    if (!options.snapshot.empty()) {
-        const auto& world = static_cast<const HuestepEngine&>(**engine).world();
-        if (const Status written = writeFile(options.snapshot, world.save()); !written)
-            return written.error();
-    }
     if (options.json)
         print(report.asJson());
     else
         report.print();
+    if (!snapshot->named()) return Exit::Done;
+    const auto& world = static_cast<const HuestepEngine&>(**engine).world();
+    if (const Status written = snapshot->write(world.save()); !written) return written.error();
     return Exit::Done;
 }
 
@@ -111,13 +134,14 @@ void addRun(Menu& menu) {
         ->required();
     sub->add_option("--engine", o->engine, "Who steps it (default: huestep)");
     sub->add_option("--ticks", o->ticks, "Steps to take (default: the scene's own)")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+        ->transform(wholeNumber(1, 1'000'000'000));
     sub->add_option("--threads", o->threads, "Threads, 1 to 64 (default: 1)")
-        ->check(CLI::Range(1, maxThreads));
+        ->transform(wholeNumber(1, maxThreads));
     sub->add_option("--simd", o->simd, "auto, scalar, sse2, avx2 or avx512 (default: auto)");
     sub->add_option("--substeps", o->substeps, "Substeps a tick (default: the scene's own)")
-        ->check(CLI::Range(1, 64));
-    sub->add_option("--hash-every", o->hashEvery, "Print the hashes after every K ticks");
+        ->transform(wholeNumber(1, 64));
+    sub->add_option("--hash-every", o->hashEvery, "Print the hashes after every K ticks")
+        ->transform(wholeNumber(1));
     sub->add_option("--snapshot", o->snapshot, "Write the state after the last tick to this file");
     sub->add_flag("--json", o->json, "Print one JSON document");
 }

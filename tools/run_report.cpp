@@ -6,7 +6,6 @@
 
 #include "tools/clock.h"
 #include "tools/engines.h"
-#include "tools/statistics.h"
 
 namespace huestep::tools {
 namespace {
@@ -69,12 +68,12 @@ void RunReport::close(const Engine& peer) {
 }
 
 Json RunReport::asJson() const {
-    const std::vector<double> ms = milliseconds(tickNanoseconds);
     Json json = {{"scene", scene}, {"engine", engine}, {"threads", threads},
                  {"simd", simd},   {"ticks", ticks},   {"interrupted", ticks < ticksAsked}};
     json["hash"] = {{"motion", hex(motionRoot)}};
     if (inside) json["hash"]["full"] = hex(inside->fullRoot);
-    json["ms_per_tick"] = {{"median", quantile(ms, 0.5)}, {"p99", quantile(ms, 0.99)}};
+    json["ms_per_tick"] = {{"median", tickNanoseconds.quantile(0.5) / nsPerMs},
+                           {"p99", tickNanoseconds.quantile(0.99) / nsPerMs}};
     json["bodies"] = bodies;
     json["contacts"] = contacts;
     json["accuracy"] = tools::asJson(accuracy);
@@ -113,21 +112,21 @@ Json RunReport::asJson() const {
     return json;
 }
 
+void RunReport::print(const TickHash& hash, bool full) {
+    std::printf("tick %llu  motion %s%s\n", static_cast<unsigned long long>(hash.tick),
+                hex(hash.motion).c_str(), full ? ("  full " + hex(hash.full)).c_str() : "");
+}
+
 void RunReport::print() const {
-    const std::vector<double> ms = milliseconds(tickNanoseconds);
-    for (const TickHash& h : hashes) {
-        const std::string full = inside ? "  full " + hex(h.full) : "";
-        std::printf("tick %llu  motion %s%s\n", static_cast<unsigned long long>(h.tick),
-                    hex(h.motion).c_str(), full.c_str());
-    }
     std::printf("scene        %s on %s, %d thread%s%s\n", scene.c_str(), engine.c_str(), threads,
                 threads == 1 ? "" : "s", inside ? (", simd " + simd).c_str() : "");
     std::printf("tick         %llu%s\n", static_cast<unsigned long long>(ticks),
                 ticks < ticksAsked ? " (stopped before the end)" : "");
     std::printf("hash         motion %s%s\n", hex(motionRoot).c_str(),
                 inside ? ("  full " + hex(inside->fullRoot)).c_str() : "");
-    std::printf("ms a tick    median %s  p99 %s\n", number(quantile(ms, 0.5)).c_str(),
-                number(quantile(ms, 0.99)).c_str());
+    std::printf("ms a tick    median %s  p99 %s\n",
+                number(tickNanoseconds.quantile(0.5) / nsPerMs).c_str(),
+                number(tickNanoseconds.quantile(0.99) / nsPerMs).c_str());
     std::printf("bodies       %llu\n", static_cast<unsigned long long>(bodies));
     std::printf("contacts     %u\n", contacts);
     if (inside) printInside();

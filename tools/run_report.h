@@ -10,6 +10,7 @@
 #include "core/scene/engine.h"
 #include "core/world/world.h"
 #include "tools/accuracy.h"
+#include "tools/statistics.h"
 #include "tools/text.h"
 
 namespace huestep::tools {
@@ -48,11 +49,10 @@ struct RunReport {
     std::string engine;
     std::string simd;
     int threads = 1;
-    double stepSeconds = 0.0;
     std::uint64_t ticksAsked = 0;
     std::uint64_t ticks = 0;  ///< taken; fewer than asked after Ctrl-C
-    std::vector<std::uint64_t> tickNanoseconds;
-    std::vector<TickHash> hashes;
+    Histogram tickNanoseconds;
+    std::vector<TickHash> hashes;  ///< for `asJson` alone
     std::uint64_t motionRoot = 0;
     std::uint64_t bodies = 0;
     std::uint32_t contacts = 0;
@@ -60,8 +60,9 @@ struct RunReport {
 
     std::optional<RunInside> inside;
 
-    void add(const StepReport& step);  ///< after each step of Huestep
-    void close(const Engine& engine);  ///< after the last step
+    static void print(const TickHash& hash, bool full);  ///< a line of text, as it comes
+    void add(const StepReport& step);                    ///< after each step of Huestep
+    void close(const Engine& engine);                    ///< after the last step
     [[nodiscard]] Json asJson() const;
     void print() const;
 

@@ -22,11 +22,13 @@
 #include "tools/lists.h"
 #include "tools/reorder.h"
 #include "tools/text.h"
+#include "tools/whole_number.h"
 
 namespace huestep::tools {
 namespace {
 
 constexpr std::uint64_t shuffleSeeds[] = {1, 2};
+constexpr std::uint64_t maxTicks = 10'000'000;  // the reference's hash of every tick is kept
 constexpr std::uint64_t noiseTicks = 60;  // how long noise lives, in a run that is long enough
 
 struct Plan {
@@ -216,6 +218,11 @@ Answer verifyWorlds(const VerifyOptions& options, Result<Plan> plan) {
     if (!threads) return threads.error();
     const Result<std::vector<Simd>> widths = parseSimdList(options.simd);
     if (!widths) return widths.error();
+    const std::uint64_t steps = plan->stories.front().steps();
+    if (options.restoreEvery > steps)
+        return Error{"--restore-every: " + std::to_string(options.restoreEvery) +
+                     " is more than the " + std::to_string(steps) +
+                     " ticks of the run, so nothing would be restored"};
     combine(*plan, *threads, *widths, options.restoreEvery);
 
     const Comparison comparison = playAll(plan->stories, plan->combinations, jobsOf(options));
@@ -245,6 +252,8 @@ Answer verify(const VerifyOptions& options, bool threadsGiven) {
     if (threadsGiven || options.restoreEvery != 0)
         return Error{"--threads, --simd and --restore-every: " + options.engine +
                      " has one thread, its own arithmetic and no snapshots"};
+    if (options.jobs != 0)
+        return Error{"--jobs: runs of " + options.engine + " cannot be made side by side"};
     return verifyPeer(options, *named);
 }
 
@@ -261,16 +270,16 @@ void addVerify(Menu& menu) {
         ->required();
     sub->add_option("--engine", o->engine, "Whose runs to compare (default: huestep)");
     sub->add_option("--ticks", o->ticks, "Steps to take (default: the scene's own)")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+        ->transform(wholeNumber(1, maxTicks));
     const auto note = [given](const std::string&) { *given = true; };
     sub->add_option("--threads", o->threads, "Thread counts (default: 1,2,3,8)")->each(note);
     sub->add_option("--simd", o->simd, "Widths, or all that this machine has (default: all)")
         ->each(note);
-    sub->add_option("--restore-every", o->restoreEvery,
-                    "Also save and restore after every K ticks");
+    sub->add_option("--restore-every", o->restoreEvery, "Also save and restore after every K ticks")
+        ->transform(wholeNumber(1));
     sub->add_flag("--reorder", o->reorder, "Also build the scene in other orders and after noise");
     sub->add_option("--jobs", o->jobs, "Combinations side by side (default: one a core)")
-        ->check(CLI::Range(1, 256));
+        ->transform(wholeNumber(1, 256));
     sub->add_flag("--json", o->json, "Print one JSON document");
 }
 

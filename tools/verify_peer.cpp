@@ -52,8 +52,9 @@ std::string nameMotion(const std::vector<BodyMotion>& left, const std::vector<Bo
 }
 
 Status compareRun(const VerifyOptions& options, const NamedScene& named, std::uint64_t ticks,
-                  const World& ids, Progress& progress, PeerRun& run) {
-    auto left = makeEngine(options.engine, named.scene);
+                  const World& ids, Progress& progress, PeerRun& run,
+                  std::vector<std::string>& notes) {
+    auto left = makeEngine(options.engine, named.scene, {}, &notes);
     if (!left) return left.error();
     auto right = makeEngine(options.engine, named.scene, {1, Simd::Auto, run.order, nullptr});
     if (!right) return right.error();
@@ -71,7 +72,8 @@ Status compareRun(const VerifyOptions& options, const NamedScene& named, std::ui
     return Done{};
 }
 
-Json asJson(const VerifyOptions& options, const std::vector<PeerRun>& runs, bool equal) {
+Json asJson(const VerifyOptions& options, const std::vector<PeerRun>& runs,
+            const std::vector<std::string>& notes, bool equal) {
     Json rows = Json::array();
     for (const PeerRun& run : runs) {
         Json row = {{"story", run.name},
@@ -84,11 +86,8 @@ Json asJson(const VerifyOptions& options, const std::vector<PeerRun>& runs, bool
         }
         rows.push_back(row);
     }
-    return {{"source", options.source},
-            {"engine", options.engine},
-            {"combinations", rows},
-            {"finished", !interrupted()},
-            {"equal", equal}};
+    return {{"source", options.source}, {"engine", options.engine},   {"notes", notes},
+            {"combinations", rows},     {"finished", !interrupted()}, {"equal", equal}};
 }
 
 }  // namespace
@@ -105,15 +104,18 @@ Answer verifyPeer(const VerifyOptions& options, const NamedScene& named) {
     const std::uint64_t ticks = options.ticks != 0 ? options.ticks : named.ticks;
     Progress progress("comparing", ticks * runs.size());
     bool equal = true;
+    std::vector<std::string> notes;  // the same for every order of creation
     for (PeerRun& run : runs) {
-        const Status compared = compareRun(options, named, ticks, *ids, progress, run);
+        const Status compared = compareRun(options, named, ticks, *ids, progress, run, notes);
         if (!compared) return compared.error();
         equal = equal && !run.differsAt;
     }
     equal = equal && !interrupted();
+    progress.clear();
+    for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
 
     if (options.json) {
-        print(asJson(options, runs, equal));
+        print(asJson(options, runs, notes, equal));
         return equal ? Exit::Done : Exit::Differs;
     }
     for (const PeerRun& run : runs) {

@@ -1,6 +1,7 @@
 // A server and its clients as processes on loopback.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/session.h"
@@ -55,16 +56,57 @@ TEST(Session, ClientsAgreeAndTheJournalReplaysWithAnyThreads) {
     EXPECT_EQ(diff.status, 0) << diff.out << diff.err;
 }
 
-TEST(Session, ReplayFromASnapshotComesToTheSameStateAsFromTheStart) {
+TEST(Session, ReplayFromASnapshotInItsMiddleComesToTheSameStateAsFromTheStart) {
+    const TemporaryFolder folder;
+    const std::string data = folder / "data";
+    const std::string log = data + "/play";
+    // The server writes a snapshot when it stops; the session goes on from there.
+    playShortSession(data);
+    const auto middle = documentOf(huestep({"replay", log, "--json"}).out)["tick"].get<int>();
+    playShortSession(data);
+    const Json whole = documentOf(huestep({"replay", log, "--json"}).out);
+    ASSERT_GT(whole["tick"], middle);
+    const Json rest =
+        documentOf(huestep({"replay", log, "--from", std::to_string(middle), "--json"}).out);
+    EXPECT_EQ(rest["first_tick"], middle);
+    EXPECT_GE(rest["hashes_compared"], whole["tick"].get<int>() - middle - 1);
+    EXPECT_GT(rest["hashes_compared"], 0);
+    EXPECT_EQ(rest["mismatches"], 0);
+    EXPECT_EQ(rest["tick"], whole["tick"]);
+    EXPECT_EQ(rest["hash"], whole["hash"]);
+
+    // From the very end there is nothing to compare, and that is what it says.
+    const Ended none = huestep({"replay", log, "--from", std::to_string(whole["tick"].get<int>())});
+    EXPECT_EQ(none.status, 0) << none.err;
+    EXPECT_NE(none.out.find("nothing was compared"), std::string::npos) << none.out;
+    EXPECT_EQ(none.out.find("equal"), std::string::npos) << none.out;
+
+    // A path that cannot be written is refused before anything is played.
+    const Ended refused = huestep({"replay", log, "--snapshot", "/nowhere/x.snap"});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.out, "");
+}
+
+TEST(Session, ASnapshotOfAJournalIsReadUnderAnyName) {
     const TemporaryFolder folder;
     playShortSession(folder / "data");
-    const std::string log = folder / "data/play";
-    const Json whole = documentOf(huestep({"replay", log, "--json"}).out);
-    const std::string end = std::to_string(whole["tick"].get<int>());
-    // The server wrote a snapshot when it stopped.
-    const Json rest = documentOf(huestep({"replay", log, "--from", end, "--json"}).out);
-    EXPECT_EQ(rest["first_tick"], whole["tick"]);
-    EXPECT_EQ(rest["hash"], whole["hash"]);
+    playShortSession(folder / "data");
+    std::vector<std::filesystem::path> snapshots;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "data/play"))
+        if (entry.path().extension() == ".snap") snapshots.push_back(entry.path());
+    ASSERT_GE(snapshots.size(), 2u);
+    std::sort(snapshots.begin(), snapshots.end());
+    const std::string copy = folder / "copy";
+    std::filesystem::copy_file(snapshots.front(), copy);
+    EXPECT_EQ(huestep({"diff", copy, snapshots.front().string()}).status, 0);
+    const Ended other = huestep({"diff", copy, snapshots.back().string()});
+    EXPECT_EQ(other.status, 1) << other.err;
+    // A name that says another tick than the file: it is not read in another file's stead.
+    const std::string wrong = snapshots.back().parent_path() / "snapshot-000000099999.snap";
+    std::filesystem::copy_file(copy, wrong);
+    const Ended refused = huestep({"diff", copy, wrong});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find(wrong), std::string::npos) << refused.err;
 }
 
 TEST(Session, AFlippedByteInAJournalIsRefusedWithFileAndOffset) {
@@ -106,6 +148,27 @@ TEST(Session, AClientLeavesCleanlyAtCtrlC) {
     EXPECT_TRUE(Process::until(20.0, [&] {
         return linesWith(server.process().err(), "event=left") == 1;
     })) << server.process().err();
+}
+
+TEST(Session, ASignalBeforeTheLoopHasItsHandlersIsNotLost) {
+    // Sent as soon as the program catches signals at all: it is still running its self-test.
+    const TemporaryFolder folder;
+    for (const int signal : {SIGINT, SIGTERM}) {
+        Server server(folder / "data", "play=sandbox", "127.0.0.1:0");
+        ASSERT_TRUE(server.process().catches(signal, 20.0));
+        server.process().send(signal);
+        EXPECT_EQ(server.process().wait(20.0), 0) << server.process().err();
+
+        Server other(folder / "other", "play=sandbox", "127.0.0.1:0");
+        const std::string address = other.address();
+        ASSERT_NE(address, "");
+        const auto client = join(address, "play");
+        ASSERT_TRUE(client->catches(signal, 20.0));
+        client->send(signal);
+        EXPECT_EQ(client->wait(20.0), 0) << client->err();
+        other.process().send(SIGTERM);
+        EXPECT_EQ(other.process().wait(20.0), 0);
+    }
 }
 
 TEST(Serve, WithoutOpenItRefusesToStart) {

@@ -1,7 +1,9 @@
 // Subcommands without a network, as processes.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/tools/process.h"
 
@@ -56,6 +58,10 @@ TEST(Run, PrintsAHashAfterEveryKTicksAndTheLastOneAgrees) {
     EXPECT_EQ(run["hashes"][2]["full"], run["hash"]["full"]);
 }
 
+TEST(Run, ReadsNumbersAsDecimalWhateverZerosStandInFront) {
+    EXPECT_EQ(documentOf({"run", "small:n=3", "--ticks", "010"})["ticks"], 10);
+}
+
 TEST(Run, MeasuresAPendulumAgainstItsClosedForm) {
     const Json run = documentOf({"run", "pendulum:angle=90", "--ticks", "600"});
     const Json& pendulum = run["accuracy"]["pendulum"];
@@ -86,6 +92,47 @@ TEST(Verify, FindsASmallWorldEqualInEveryOrderAfterNoiseAndRestores) {
         EXPECT_EQ(row["tick"], 90);
     }
     EXPECT_EQ(stories.size(), 5u);
+}
+
+TEST(Verify, FindsEverySceneOfTheCatalogueEqualInEveryOrderAndAfterNoise) {
+    // Large scenes in small: what is tried is their kinds of bodies and joints.
+    const std::map<std::string, std::string> smaller = {{"joint_grid", "joint_grid:n=8"},
+                                                        {"many_pyramids", "many_pyramids:rows=2"},
+                                                        {"pyramid", "pyramid:base=8"},
+                                                        {"tumbler", "tumbler:count=3"}};
+    const Json scenes = documentOf({"scenes"});
+    ASSERT_GE(scenes["scenes"].size(), 8u);
+    for (const Json& scene : scenes["scenes"]) {
+        const std::string name = scene["name"];
+        const auto small = smaller.find(name);
+        const std::string text = small == smaller.end() ? name : small->second;
+        const Json document = documentOf(
+            {"verify", text, "--ticks", "12", "--threads", "2", "--simd", "scalar", "--reorder"});
+        EXPECT_EQ(document["equal"], true) << text << ": " << document.value("difference", "");
+    }
+}
+
+/// A scene file's name in the folder, with bodies at the given places and limits as given.
+std::string sceneFile(const TemporaryFolder& folder, const Json& bodies, const Json& limits) {
+    const std::string path = folder / "scene.json";
+    std::ofstream(path) << Json{{"version", 1}, {"bodies", bodies}, {"limits", limits}};
+    return path;
+}
+
+TEST(Verify, FindsRoomForNoiseBesideAWorldThatIsWideOrAtItsLimits) {
+    const TemporaryFolder folder;
+    const Json floor = {
+        {"position", {{"x", 950000}, {"y", 0}}},
+        {"shapes", Json::array({{{"kind", "segment"},
+                                 {"vertices",
+                                  Json::array({{{"x", -9000}, {"y", 0}}, {{"x", 9000}, {"y", 0}}})},
+                                 {"radius", 0}}})}};
+    const std::string path =
+        sceneFile(folder, Json::array({floor}),
+                  {{"bodies", 1000000}, {"shapes", 2000000}, {"joints", 1000000}});
+    const Json document =
+        documentOf({"verify", path, "--ticks", "10", "--threads", "1", "--reorder"});
+    EXPECT_EQ(document["equal"], true) << document.value("difference", "");
 }
 
 TEST(Verify, GivesTheSameAnswerForAnyNumberOfJobs) {
@@ -126,6 +173,33 @@ TEST(Diff, NamesTheFieldInWhichTwoSnapshotsDiffer) {
     EXPECT_NE(document["difference"]["left"], document["difference"]["right"]);
 }
 
+TEST(Diff, ReadsASnapshotWhateverItIsCalled) {
+    const TemporaryFolder folder;
+    const std::string plain = folder / "plain";
+    const std::string named = folder / "snapshot-000000000005.snap";  // as a journal calls its own
+    for (const std::string& path : {plain, named})
+        documentOf({"run", "small:n=3", "--ticks", "5", "--snapshot", path});
+    EXPECT_EQ(documentOf({"diff", plain, named})["equal"], true);
+}
+
+TEST(Run, ShowsItsResultEvenWhereTheSnapshotCannotBeWrittenInTheEnd) {
+    const Ended ended = huestep({"run", "small:n=3", "--ticks", "5", "--snapshot", "/dev/full"});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_NE(ended.out.find("hash         motion "), std::string::npos) << ended.out;
+    EXPECT_NE(ended.err.find("/dev/full"), std::string::npos) << ended.err;
+}
+
+TEST(Run, PrintsHashesAsTheyCome) {
+    // A run without an end that could be waited for, whose first hashes are there all the same.
+    Process process(
+        {huestepProgram, "run", "small:n=1", "--ticks", "1000000000", "--hash-every", "10"});
+    EXPECT_TRUE(Process::until(
+        60.0, [&] { return process.out().find("tick 20  motion ") != std::string::npos; }))
+        << process.out() << process.err();
+    process.send(SIGINT);
+    EXPECT_EQ(process.wait(20.0), 0);
+}
+
 TEST(Diff, RefusesASnapshotWithAFlippedByteAndNamesTheOffset) {
     const TemporaryFolder folder;
     const std::string good = folder / "good.snap";
@@ -163,11 +237,29 @@ TEST(Bench, PutsEnginesSideBySideWithHashesAndErrors) {
     EXPECT_EQ(linesWith(textOf(csv), ""), 4);
 }
 
+TEST(Bench, SaysOnceWhatAnEngineLeavesOutAndWhetherEveryRepeatAgreed) {
+    const std::vector<std::string> words = {"bench",    "mixed", "--ticks",   "5",
+                                            "--repeat", "2",     "--threads", "1,2"};
+    const Json document = documentOf(words);
+    for (const Json& row : document["results"]) {
+        EXPECT_EQ(row["same_hash"], true);
+        EXPECT_EQ(row["notes"].empty(), row["engine"] == "huestep") << row;
+    }
+    // Of the scene's capsules Box2D has none, which `run` says as well.
+    const Ended ended = huestep(words);
+    EXPECT_EQ(linesWith(ended.err, "capsule"), 1) << ended.err;
+}
+
+TEST(Verify, SaysWhatAPeerLeavesOutOfTheScene) {
+    const std::vector<std::string> words = {"verify", "mixed", "--ticks", "2", "--engine", "box2d"};
+    EXPECT_FALSE(documentOf(words)["notes"].empty());
+    EXPECT_EQ(linesWith(huestep(words).err, "capsule"), 1);
+}
+
 TEST(Interrupt, CtrlCEndsARunCleanlyWithWhatItHas) {
     Process process({huestepProgram, "run", "small", "--ticks", "1000000000", "--json"});
-    // Time to load libraries and begin; the run itself would take hours.
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    process.send(SIGINT);
+    ASSERT_TRUE(process.catches(SIGINT, 20.0));
+    process.send(SIGINT);  // the run itself would take hours
     EXPECT_EQ(process.wait(20.0), 0);
     const Json document = Json::parse(process.out(), nullptr, false);
     ASSERT_FALSE(document.is_discarded()) << process.out();
@@ -177,7 +269,7 @@ TEST(Interrupt, CtrlCEndsARunCleanlyWithWhatItHas) {
 
 TEST(Interrupt, CtrlCEndsAComparisonWithoutSayingThatAllIsEqual) {
     Process process({huestepProgram, "verify", "pyramid:base=30", "--ticks", "1000000", "--json"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    ASSERT_TRUE(process.catches(SIGINT, 20.0));
     process.send(SIGINT);
     EXPECT_EQ(process.wait(20.0), 1);
     const Json document = Json::parse(process.out(), nullptr, false);
