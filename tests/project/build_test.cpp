@@ -53,6 +53,38 @@ TEST(Flags, EveryFileIsCompiledWithoutContractionOrReordering) {
     EXPECT_GT(commands, 50);
 }
 
+/// The last of a command's words that begin with `begin`: the one that a compiler obeys.
+std::string lastWord(const std::string& line, const std::string& begin) {
+    std::istringstream words(line);
+    std::string last;
+    for (std::string word; words >> word;)
+        if (word.starts_with(begin)) last = word;
+    return last;
+}
+
+TEST(Flags, APresetsOwnFlagsReachTheCompiler) {
+    const std::string cmake = "cmake --log-level=ERROR -DHUESTEP_TESTS=OFF -S '" + root.string();
+    for (const auto& [preset, optimization] :
+         {std::pair{"asan", "-O1"}, {"tsan", "-O1"}, {"debug", "-O0"}, {"release", "-O3"}}) {
+        const TemporaryFolder folder;
+        std::string said;
+        const bool configured =
+            forEachLineOf(cmake + "' -B '" + folder / preset + "' --preset " + preset + " 2>&1",
+                          [&](const std::string& line) { said += line; });
+        ASSERT_TRUE(configured) << preset << ": " << said;
+        const std::string path = folder / (std::string(preset) + "/compile_commands.json");
+        int commands = 0;
+        for (const std::string& line : linesOf(textOf(path))) {
+            if (line.find("\"command\":") == std::string::npos) continue;
+            ++commands;
+            EXPECT_EQ(lastWord(line, "-O"), optimization) << preset << ": " << line;
+            if (std::string(optimization) == "-O3") continue;
+            EXPECT_EQ(lastWord(line, "-g"), "-g1") << preset << ": " << line;
+        }
+        EXPECT_GT(commands, 50) << preset;
+    }
+}
+
 TEST(Floats, DenormalsAreOnAtStart) {
     volatile float smallest = std::numeric_limits<float>::min();
     volatile float half = 0.5f;

@@ -16,7 +16,8 @@ Ended run(std::vector<std::string> words) {
 }
 
 TEST(Scripts, AreProgramsThatParse) {
-    for (const char* name : {"scripts/demo", "scripts/test", "scripts/install", ".ci/run"}) {
+    for (const char* name :
+         {"scripts/demo", "scripts/test", "scripts/install", "scripts/layout", ".ci/run"}) {
         const std::string path = (root / name).string();
         EXPECT_EQ(::access(path.c_str(), X_OK), 0) << name << " is not executable";
         EXPECT_EQ(run({"/bin/bash", "-n", path}).status, 0) << name;
@@ -29,8 +30,53 @@ TEST(Scripts, RefuseWhatTheyDoNotKnow) {
         EXPECT_EQ(ended.status, 2) << name;
         EXPECT_NE(ended.err.find("--nonsense"), std::string::npos) << ended.err;
     }
-    for (const char* seconds : {"0", "soon", ""})
-        EXPECT_EQ(run({(root / "scripts/demo").string(), "--seconds", seconds}).status, 2);
+    const std::string demo = (root / "scripts/demo").string();
+    for (const char* seconds : {"0", "00", "-1", "soon", ""}) {
+        const Ended ended = run({demo, "--seconds", seconds});
+        EXPECT_EQ(ended.status, 2) << seconds;
+        EXPECT_NE(ended.err.find("--seconds"), std::string::npos) << ended.err;
+    }
+    // Digits are decimal, whatever stands in front of them: it goes on to the next option.
+    const Ended ended = run({demo, "--seconds", "08", "--program", "/nowhere/huestep"});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_NE(ended.err.find("/nowhere/huestep"), std::string::npos) << ended.err;
+}
+
+/// A folder with the script that looks at the layout, and one C++ file.
+class Layout : public testing::Test {
+ protected:
+    Layout() {
+        std::filesystem::create_directory(m_folder / "scripts");
+        for (const char* name : {"scripts/layout", ".clang-format"})
+            std::filesystem::copy_file(root / name, m_folder / name);
+    }
+    Ended git(std::vector<std::string> words) {
+        words.insert(words.begin(), {"/usr/bin/env", "git", "-C", m_folder / "."});
+        return run(std::move(words));
+    }
+    void write(const std::string& text) { std::ofstream(m_folder / "one.cpp") << text; }
+    Ended look() { return run({m_folder / "scripts/layout"}); }
+
+    TemporaryFolder m_folder;
+};
+
+TEST_F(Layout, IsFoundWrongInAFileThatGitKnows) {
+    ASSERT_EQ(git({"init", "--quiet"}).status, 0);
+    write("int  one( ) ;\n");
+    ASSERT_EQ(git({"add", "one.cpp"}).status, 0);
+    const Ended wrong = look();
+    EXPECT_NE(wrong.status, 0);
+    EXPECT_NE(wrong.out.find("one.cpp"), std::string::npos) << wrong.out << wrong.err;
+    write("int one();\n");
+    const Ended right = look();
+    EXPECT_EQ(right.status, 0) << right.out << right.err;
+}
+
+TEST_F(Layout, IsNotFoundRightWhereNoFileWasSeen) {
+    write("int one();\n");
+    EXPECT_NE(look().status, 0) << "no repository";
+    ASSERT_EQ(git({"init", "--quiet"}).status, 0);
+    EXPECT_NE(look().status, 0) << "no file that git knows";
 }
 
 TEST(Packages, EveryLineNamesGroupPackageAndHowToSeeIt) {
