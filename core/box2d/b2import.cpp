@@ -17,14 +17,6 @@ Vec2 fromB2(const b2Vec2& v) {
     return {canonicalZero(v.x), canonicalZero(v.y)};
 }
 
-std::string pathOf(std::string_view list, std::size_t index) {
-    std::string path(list);
-    path += '[';
-    path += std::to_string(index);
-    path += ']';
-    return path;
-}
-
 /// Box2D's lists hold the newest first; the order of creation is the reverse.
 template <class Item>
 std::vector<const Item*> inOrderOfCreation(const Item* newest) {
@@ -32,6 +24,18 @@ std::vector<const Item*> inOrderOfCreation(const Item* newest) {
     for (const Item* item = newest; item != nullptr; item = item->GetNext()) items.push_back(item);
     std::reverse(items.begin(), items.end());
     return items;
+}
+
+/// Whether a body is nothing but what mouse joints hold on to, which have no body A here.
+bool onlyHoldsMice(const b2Body& body) {
+    if (body.GetType() != b2_staticBody || body.GetFixtureList() != nullptr) return false;
+    const b2JointEdge* edge = body.GetJointList();
+    if (edge == nullptr) return false;
+    for (; edge != nullptr; edge = edge->next) {
+        if (edge->joint->GetType() != e_mouseJoint || edge->joint->GetBodyA() != &body)
+            return false;
+    }
+    return true;
 }
 
 /// The inverse of b2LinearStiffness: k = m ω², d = 2 m ζ ω, with m the mass both bodies share.
@@ -67,7 +71,9 @@ Result<B2Import> Importer::import(const b2World& world, float stepSeconds) {
     m_scene.gravity = fromB2(world.GetGravity());
     m_scene.sleep = world.GetAllowSleeping();
     m_scene.stepSeconds = stepSeconds;
-    for (const b2Body* body : inOrderOfCreation(world.GetBodyList())) addBody(*body);
+    for (const b2Body* body : inOrderOfCreation(world.GetBodyList())) {
+        if (!onlyHoldsMice(*body)) addBody(*body);
+    }
     const auto joints = inOrderOfCreation(world.GetJointList());
     for (std::size_t i = 0; i < joints.size(); ++i) addJoint(*joints[i], pathOf("joints", i));
     if (const Status checked = check(m_scene); !checked) return checked.error();
@@ -151,7 +157,7 @@ void Importer::addJoint(const b2Joint& joint, const std::string& path) {
     // Box2D's accessors of a joint's bodies are not const.
     b2Joint& source = const_cast<b2Joint&>(joint);
     JointDef def;
-    def.bodyA = m_places.at(source.GetBodyA());
+    if (joint.GetType() != e_mouseJoint) def.bodyA = m_places.at(source.GetBodyA());
     def.bodyB = m_places.at(source.GetBodyB());
     def.collideConnected = joint.GetCollideConnected();
     switch (joint.GetType()) {

@@ -24,14 +24,6 @@ b2Vec2 toB2(Vec2 v) {
     return {v.x, v.y};
 }
 
-std::string pathOf(std::string_view list, std::size_t index) {
-    std::string path(list);
-    path += '[';
-    path += std::to_string(index);
-    path += ']';
-    return path;
-}
-
 /// splitmix64 (Steele, Lea and Flood 2014): well mixed for any seed.
 class Shuffler {
  public:

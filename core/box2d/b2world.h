@@ -51,9 +51,10 @@ struct B2Import {
     std::vector<std::string> notes;  ///< as above
 };
 
-/// Chains become segments; sensors, bullets' extra care and joints of other kinds are left out and
-/// noted. Masses are those of the shapes: a body whose mass was set by hand is noted. Fails with
-/// the sentence of `check` where the result is no valid scene, as for a body without mass.
+/// Chains become segments; a static body that only mouse joints hold on to is none; sensors,
+/// bullets' extra care and joints of other kinds are left out and noted. Masses are those of the
+/// shapes: a body whose mass was set by hand is noted. Fails with the sentence of `check` where the
+/// result is no valid scene, as for a body without mass.
 Result<B2Import> sceneOfB2World(const b2World& world, float stepSeconds = 1.0f / 60.0f);
 
 }  // namespace huestep

@@ -1,4 +1,4 @@
-/// Collects what a conversion loses: one sentence a kind of loss, with the first place and a count.
+/// What a conversion loses: one sentence a kind of loss, with the first place and a count.
 #pragma once
 
 #include <string>
@@ -6,6 +6,11 @@
 #include <vector>
 
 namespace huestep {
+
+/// "bodies[3]"
+inline std::string pathOf(std::string_view list, std::size_t index) {
+    return std::string(list) + '[' + std::to_string(index) + ']';
+}
 
 class Notes {
  public:
