@@ -23,7 +23,7 @@ struct GoldenRun {
     std::string scene;
     std::string guards;  ///< why this golden exists
     std::vector<std::uint64_t> ticks;
-    std::uint64_t debugTicks;  ///< builds with asserts stop here: their ticks are shared
+    std::uint64_t debugTicks;  ///< builds that do not optimize stop here, at ticks of the others
     CommandsOf commandsOf = silence;
     bool watchSleep = false;  ///< the tick in which everything is asleep is golden too
 };
@@ -143,7 +143,7 @@ TEST_P(GoldenHashes, AreThoseOfEveryConfiguration) {
     const char* mint = std::getenv("HUESTEP_MINT");
     ASSERT_TRUE(mint == nullptr || saysWhy(mint))
         << "HUESTEP_MINT='" << mint << "' does not say why the results changed";
-#ifdef NDEBUG
+#ifdef HUESTEP_WHOLE_RUNS
     const bool whole = true;
 #else
     const bool whole = mint != nullptr;

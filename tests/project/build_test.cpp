@@ -39,6 +39,24 @@ TEST(MachineCode, OfTheCoreHoldsNoFusedMultiplyAdd) {
     EXPECT_GT(instructions, 10'000) << "too few lines: was the library disassembled?";
 }
 
+TEST(MachineCode, OfTheCoreCallsNoLibraryForItsMathematics) {
+    const std::string library = (build / "core" / "libhuestep_core.a").string();
+    // Of libm, square roots and roundings are exact and the same everywhere; these are not.
+    const std::regex inexact(
+        R"( U (a?(sin|cos|tan)h?|sincos|atan2|exp(2|m1)?|log(2|10|1p)?|pow|hypot|cbrt|fmod)[fl]?\b)");
+    EXPECT_TRUE(std::regex_search("                 U sincosf@GLIBC_2.2.5", inexact));
+    EXPECT_TRUE(std::regex_search("                 U atan2f", inexact));
+    EXPECT_FALSE(std::regex_search("                 U sqrtf", inexact));
+    int needed = 0;
+    const bool ended =
+        forEachLineOf("nm -u '" + library + "' 2>/dev/null", [&](const std::string& line) {
+            needed += line.find(" U ") != std::string::npos ? 1 : 0;
+            EXPECT_FALSE(std::regex_search(line, inexact)) << line;
+        });
+    EXPECT_TRUE(ended) << "nm failed on " << library;
+    EXPECT_GT(needed, 100) << "too few names: was the library read?";
+}
+
 TEST(Flags, EveryFileIsCompiledWithoutContractionOrReordering) {
     int commands = 0;
     for (const std::string& line : linesOf(textOf(build / "compile_commands.json"))) {
