@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/scene/in_double.h"
+
 namespace huestep::tools {
 namespace {
 
@@ -11,16 +13,6 @@ using Vec2d = Vec2T<double>;
 
 constexpr std::size_t smallScene = 256;   // bodies up to which every tick is measured
 constexpr std::uint64_t largeEvery = 30;  // ticks between measures of larger scenes
-
-Vec2d wide(Vec2 v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y)};
-}
-
-double kineticEnergy(const BodyInfo& body, const BodyMotion& motion) {
-    const auto w = static_cast<double>(motion.angularVelocity);
-    return 0.5 * static_cast<double>(body.mass) * lengthSquared(wide(motion.velocity)) +
-           0.5 * static_cast<double>(body.inertia) * w * w;
-}
 
 double energyScale(const World& world) {
     double mass = 0.0;
@@ -30,14 +22,14 @@ double energyScale(const World& world) {
     for (std::size_t i = 0; i < world.bodies().size(); ++i) {
         const BodyInfo& body = world.bodies()[i];
         const BodyMotion& motion = world.motions()[i];
-        low = minOf(low, wide(motion.position));
-        high = maxOf(high, wide(motion.position));
+        low = minOf(low, inDouble(motion.position));
+        high = maxOf(high, inDouble(motion.position));
         if (!body.dynamic()) continue;
         mass += static_cast<double>(body.mass);
         kinetic += kineticEnergy(body, motion);
     }
     const double extent = std::max(world.bodies().empty() ? 0.0 : length(high - low), 1.0);
-    const double scale = mass * length(wide(world.info().gravity)) * extent + kinetic;
+    const double scale = mass * length(inDouble(world.info().gravity)) * extent + kinetic;
     return scale > 0.0 ? scale : 1.0;
 }
 

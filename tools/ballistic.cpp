@@ -2,16 +2,14 @@
 
 #include <algorithm>
 
+#include "core/scene/in_double.h"
+
 namespace huestep::tools {
 namespace {
 
 using Vec2d = Vec2T<double>;
 
 constexpr double flight = 1.0;  // s
-
-Vec2d wide(Vec2 v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y)};
-}
 
 }  // namespace
 
@@ -24,8 +22,9 @@ std::optional<Ballistic> Ballistic::find(const World& start) {
         if (!body.dynamic()) continue;
         if (body.linearDamping > 0.0f) return std::nullopt;
         const BodyMotion& motion = start.motions()[i];
-        b.m_bodies.push_back({i, wide(motion.position), wide(motion.velocity),
-                              static_cast<double>(body.gravityScale) * wide(start.info().gravity)});
+        b.m_bodies.push_back(
+            {i, inDouble(motion.position), inDouble(motion.velocity),
+             static_cast<double>(body.gravityScale) * inDouble(start.info().gravity)});
     }
     if (b.m_bodies.empty()) return std::nullopt;
     return b;
@@ -40,7 +39,7 @@ void Ballistic::watch(std::span<const BodyMotion> motions, bool touching) {
     m_result = {t, 0.0};
     for (const Body& body : m_bodies) {
         const Vec2d exact = body.position + t * body.velocity + (0.5 * t * t) * body.gravity;
-        const double error = length(wide(motions[body.place].position) - exact);
+        const double error = length(inDouble(motions[body.place].position) - exact);
         m_result.maxError = std::max(m_result.maxError, error);
     }
 }

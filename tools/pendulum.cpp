@@ -3,14 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/scene/in_double.h"
+
 namespace huestep::tools {
 namespace {
 
 using Vec2d = Vec2T<double>;
-
-Vec2d wide(Vec2 v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y)};
-}
 
 /// The arithmetic-geometric mean by its own iteration, which converges quadratically.
 double agm(double a, double b) {
@@ -49,10 +47,10 @@ std::optional<Pendulum> Pendulum::find(const World& start) {
     p.m_step = static_cast<double>(start.info().stepSeconds);
     p.m_mass = static_cast<double>(body.mass);
     p.m_inertia = static_cast<double>(body.inertia);
-    p.m_length = length(wide(bobIsA ? joint.anchorA : joint.anchorB));
+    p.m_length = length(inDouble(bobIsA ? joint.anchorA : joint.anchorB));
     const Vec2 anchor = bobIsA ? joint.anchorB : joint.anchorA;
-    p.m_pivot = wide(transform(start.motions()[hook].pose(), anchor));
-    const Vec2d gravity = static_cast<double>(body.gravityScale) * wide(start.info().gravity);
+    p.m_pivot = inDouble(transform(start.motions()[hook].pose(), anchor));
+    const Vec2d gravity = static_cast<double>(body.gravityScale) * inDouble(start.info().gravity);
     p.m_gravity = length(gravity);
     p.m_down = normalized(gravity);
     if (!(p.m_length > 0.0) || !(p.m_gravity > 0.0)) return std::nullopt;
@@ -66,14 +64,14 @@ std::optional<Pendulum> Pendulum::find(const World& start) {
 }
 
 double Pendulum::angle(const BodyMotion& bob) const {
-    const Vec2d arm = wide(bob.position) - m_pivot;
+    const Vec2d arm = inDouble(bob.position) - m_pivot;
     return std::atan2(cross(m_down, arm), dot(m_down, arm));
 }
 
 double Pendulum::energy(const BodyMotion& bob) const {
     const auto spin = static_cast<double>(bob.angularVelocity);
-    const double height = m_length - dot(m_down, wide(bob.position) - m_pivot);
-    return m_mass * m_gravity * height + 0.5 * m_mass * lengthSquared(wide(bob.velocity)) +
+    const double height = m_length - dot(m_down, inDouble(bob.position) - m_pivot);
+    return m_mass * m_gravity * height + 0.5 * m_mass * lengthSquared(inDouble(bob.velocity)) +
            0.5 * m_inertia * spin * spin;
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "core/scene/in_double.h"
 #include "core/scene/scene.h"
 
 namespace huestep {
@@ -104,10 +105,6 @@ class Checker {
     std::string m_sentence;
 };
 
-Vec2T<double> wide(Vec2 v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y)};
-}
-
 bool Checker::vertexCount(const Place& place, const ShapeDef& shape) {
     const std::uint32_t count = shape.vertexCount;
     switch (shape.kind) {
@@ -130,19 +127,20 @@ bool Checker::polygon(const Place& place, const ShapeDef& shape) {
     const std::size_t count = shape.vertexCount;
     double area = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec2T<double> a = wide(shape.vertices[i]) - wide(shape.vertices[0]);
-        const Vec2T<double> b = wide(shape.vertices[(i + 1) % count]) - wide(shape.vertices[0]);
+        const Vec2T<double> a = inDouble(shape.vertices[i]) - inDouble(shape.vertices[0]);
+        const Vec2T<double> b =
+            inDouble(shape.vertices[(i + 1) % count]) - inDouble(shape.vertices[0]);
         area += 0.5 * cross(a, b);
     }
     if (area < 0.0) return fail(place.at("vertices"), "run clockwise, must run counter-clockwise");
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t next = (i + 1) % count;
-        const Vec2T<double> edge = wide(shape.vertices[next]) - wide(shape.vertices[i]);
+        const Vec2T<double> edge = inDouble(shape.vertices[next]) - inDouble(shape.vertices[i]);
         const double edgeLength = length(edge);
         for (std::size_t j = 0; j < count; ++j) {
             if (j == i || j == next) continue;
             const double depth =
-                cross(edge, wide(shape.vertices[j]) - wide(shape.vertices[i])) / edgeLength;
+                cross(edge, inDouble(shape.vertices[j]) - inDouble(shape.vertices[i])) / edgeLength;
             if (depth >= static_cast<double>(caps::minVertexDepth)) continue;
             const Place vertices = place.at("vertices", static_cast<std::int64_t>(j));
             const std::string edgeText = "the edge from vertex " + text(i) + " to " + text(next);
@@ -168,7 +166,7 @@ bool Checker::shape(const Place& place, const ShapeDef& shape) {
     }
     for (std::size_t i = 0; count > 1 && i < (count == 2 ? 1 : count); ++i) {
         const std::size_t next = (i + 1) % count;
-        if (length(wide(shape.vertices[next]) - wide(shape.vertices[i])) <
+        if (length(inDouble(shape.vertices[next]) - inDouble(shape.vertices[i])) <
             static_cast<double>(caps::minEdge)) {
             return fail(place.at("vertices", static_cast<std::int64_t>(next)),
                         "less than " + text(caps::minEdge) + " m from vertex " + text(i));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/collision/manifold.h"
+#include "core/scene/in_double.h"
 
 namespace huestep {
 
@@ -14,16 +15,12 @@ using Posed = PoseT<double>;
 
 constexpr std::uint32_t nowhere = 0xffffffffu;
 
-Vec2d wide(Vec2 v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y)};
-}
-
 /// The pose in double, its rotation brought back to unit length: the measure judges positions, not
 /// the rounding of a unit vector.
 Posed poseOf(const BodyMotion& motion) {
     const RotationT<double> q{static_cast<double>(motion.rotation.c),
                               static_cast<double>(motion.rotation.s)};
-    return {wide(motion.position), normalized(q)};
+    return {inDouble(motion.position), normalized(q)};
 }
 
 std::uint32_t placeOf(std::span<const BodyInfo> bodies, BodyId id) {
@@ -36,24 +33,22 @@ std::uint32_t placeOf(std::span<const BodyInfo> bodies, BodyId id) {
 
 double energyOf(const WorldInfo& world, std::span<const BodyInfo> bodies,
                 std::span<const BodyMotion> motions) {
-    const Vec2d gravity = wide(world.gravity);
+    const Vec2d gravity = inDouble(world.gravity);
     double energy = 0.0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (!bodies[i].dynamic()) continue;
-        const double mass = static_cast<double>(bodies[i].mass);
-        const double inertia = static_cast<double>(bodies[i].inertia);
-        const double spin = static_cast<double>(motions[i].angularVelocity);
-        const double scale = static_cast<double>(bodies[i].gravityScale);
-        energy += 0.5 * mass * lengthSquared(wide(motions[i].velocity));
-        energy += 0.5 * inertia * spin * spin;
-        energy -= mass * scale * dot(gravity, wide(motions[i].position));
+        const double weight =
+            static_cast<double>(bodies[i].mass) * static_cast<double>(bodies[i].gravityScale);
+        energy += kineticEnergy(bodies[i], motions[i]);
+        energy -= weight * dot(gravity, inDouble(motions[i].position));
     }
     return energy;
 }
 
 /// How far the joint is from where it should be; 0 for a mouse joint, whose target may be far.
 double errorOf(const JointInfo& joint, const Posed& poseA, const Posed& poseB) {
-    const Vec2d gap = transform(poseB, wide(joint.anchorB)) - transform(poseA, wide(joint.anchorA));
+    const Vec2d gap =
+        transform(poseB, inDouble(joint.anchorB)) - transform(poseA, inDouble(joint.anchorA));
     const double distance = length(gap);
     if (joint.kind() == JointKind::Revolute) return distance;
     if (joint.kind() == JointKind::Mouse) return 0.0;
@@ -158,6 +153,12 @@ void measurePenetration(std::span<const BodyInfo> bodies, std::span<const ShapeI
 }
 
 }  // namespace
+
+double kineticEnergy(const BodyInfo& body, const BodyMotion& motion) {
+    const auto spin = static_cast<double>(motion.angularVelocity);
+    return 0.5 * static_cast<double>(body.mass) * lengthSquared(inDouble(motion.velocity)) +
+           0.5 * static_cast<double>(body.inertia) * spin * spin;
+}
 
 Measures measure(const WorldInfo& world, std::span<const BodyInfo> bodies,
                  std::span<const ShapeInfo> shapes, std::span<const JointInfo> joints,
