@@ -1,6 +1,7 @@
 #include "core/collision/broad_phase.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace huestep {
@@ -12,6 +13,7 @@ constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits, as speeds 
 constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
 constexpr std::uint32_t joinGrain = 256;
+constexpr std::uint32_t sparseLevel = 16;  // entries: a level of so few is read whole
 constexpr float farthestTravel = 1000.0f;  // m: no fat box may outgrow the widest cell
 
 float cellSize(int level) {
@@ -46,6 +48,17 @@ std::uint64_t keyOf(const Bounds& box) {
     const float inverse = 1.0f / cellSize(level);
     return keyOf(level, cellOf(0.5f * (box.low.y + box.high.y), inverse),
                  cellOf(0.5f * (box.low.x + box.high.x), inverse));
+}
+
+/// Cells in which the centres of boxes lie that overlap a box: at most half a cell beyond it.
+struct Cells {
+    std::int64_t row0, row1, column0, column1;
+};
+Cells cellsAround(int level, const Bounds& box) {
+    const float size = cellSize(level);
+    const float inverse = 1.0f / size;
+    return {cellOf(box.low.y - 0.5f * size, inverse), cellOf(box.high.y + 0.5f * size, inverse),
+            cellOf(box.low.x - 0.5f * size, inverse), cellOf(box.high.x + 0.5f * size, inverse)};
 }
 
 /// A little room all around, and the way the shape will go in the next ticks.
@@ -89,6 +102,39 @@ void sortPairs(std::vector<ShapePair>& pairs, std::size_t shapeCount,
 
 }  // namespace
 
+void markAlone(std::span<ShapeProxy> proxies) {
+    constexpr std::size_t mostKinds = 64;  // each is compared with each
+    struct Kind {
+        Filter filter;
+        bool dynamic = false;
+        std::uint32_t body = 0;
+        bool manyBodies = false;
+        bool alone = true;
+    };
+    std::vector<Kind> kinds;
+    const auto kindOf = [&](const ShapeProxy& p) {
+        return std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) {
+            return k.filter == p.filter && k.dynamic == p.dynamic;
+        });
+    };
+    for (const ShapeProxy& p : proxies) {
+        const auto known = kindOf(p);
+        if (known != kinds.end()) {
+            known->manyBodies = known->manyBodies || known->body != p.body;
+        } else {
+            if (kinds.size() == mostKinds) return;
+            kinds.push_back({p.filter, p.dynamic, p.body});
+        }
+    }
+    for (Kind& a : kinds) {
+        for (const Kind& b : kinds) {
+            if (&a == &b && !a.manyBodies) continue;
+            if (mayTouch(a.filter, b.filter) && (a.dynamic || b.dynamic)) a.alone = false;
+        }
+    }
+    for (ShapeProxy& p : proxies) p.alone = kindOf(p)->alone;
+}
+
 void BroadPhase::clear() {
     m_fat.clear();
     m_entries.clear();
@@ -97,13 +143,15 @@ void BroadPhase::clear() {
     m_isMoved.clear();
 }
 
-void BroadPhase::rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel) {
+void BroadPhase::rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel,
+                            std::span<const ShapeProxy> proxies) {
     m_fat.resize(tight.size());
     m_isMoved.assign(tight.size(), 0);
-    m_entries.resize(tight.size());
+    m_entries.clear();
     for (std::uint32_t i = 0; i < tight.size(); ++i) {
+        if (proxies[i].alone) continue;
         m_fat[i] = fattened(tight[i], travel[i]);
-        m_entries[i] = {keyOf(m_fat[i]), i, m_fat[i]};
+        m_entries.push_back({keyOf(m_fat[i]), i, m_fat[i]});
     }
     std::sort(m_entries.begin(), m_entries.end(), [](const Entry& a, const Entry& b) {
         return a.key != b.key ? a.key < b.key : a.shape < b.shape;
@@ -147,63 +195,94 @@ void BroadPhase::visitOverlaps(const Level& level, const Bounds& box, Visit visi
             if (overlaps(m_entries[i].box, box)) visit(m_entries[i]);
         }
     };
-    const float size = cellSize(level.level);
-    const float inverse = 1.0f / size;
-    // Centres of overlapping boxes are at most half a cell beyond this box.
-    const std::int64_t row0 = cellOf(box.low.y - 0.5f * size, inverse);
-    const std::int64_t row1 = cellOf(box.high.y + 0.5f * size, inverse);
-    const std::int64_t column0 = cellOf(box.low.x - 0.5f * size, inverse);
-    const std::int64_t column1 = cellOf(box.high.x + 0.5f * size, inverse);
+    const Cells cells = cellsAround(level.level, box);
     const std::uint32_t population = level.end - level.begin;
-    if (population <= 16 || row1 - row0 >= static_cast<std::int64_t>(population) / 8) {
+    if (population <= sparseLevel ||
+        cells.row1 - cells.row0 >= static_cast<std::int64_t>(population) / 8) {
         scan(level.begin, level.end, ~std::uint64_t{0});
         return;
     }
-    for (std::int64_t row = row0; row <= row1; ++row) {
-        const std::uint64_t first = keyOf(level.level, row, column0);
+    for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
+        const std::uint64_t first = keyOf(level.level, row, cells.column0);
         const auto from =
             std::lower_bound(m_entries.begin() + level.begin, m_entries.begin() + level.end, first,
                              [](const Entry& e, std::uint64_t key) { return e.key < key; });
         scan(static_cast<std::uint32_t>(from - m_entries.begin()), level.end,
-             keyOf(level.level, row, column1));
+             keyOf(level.level, row, cells.column1));
     }
 }
+
+/// Walks entries in key order beside a run of others that moves up with them.
+///
+/// `first(key)` is the first entry at or after a key. Entries of a row come with rising columns, so
+/// the run mostly moves a step; a new row is found by bisection.
+class BroadPhase::Cursor {
+ public:
+    std::uint32_t first(std::span<const Entry> entries, std::uint64_t key) {
+        const auto end = static_cast<std::uint32_t>(entries.size());
+        if (m_at >= end || key < m_key || (entries[m_at].key + farKeys < key)) {
+            m_at = static_cast<std::uint32_t>(
+                std::lower_bound(entries.begin(), entries.end(), key,
+                                 [](const Entry& e, std::uint64_t k) { return e.key < k; }) -
+                entries.begin());
+        }
+        m_key = key;
+        while (m_at < end && entries[m_at].key < key) ++m_at;
+        return m_at;
+    }
+
+ private:
+    static constexpr std::uint64_t farKeys = 64;  // columns: past that bisection is quicker
+    std::uint64_t m_key = 0;
+    std::uint32_t m_at = 0;
+};
 
 /// All pairs of an entry of [begin, end) with later ones of its level and with coarser levels.
 void BroadPhase::joinBlock(std::uint32_t begin, std::uint32_t end,
                            std::span<const ShapeProxy> proxies,
                            std::span<const ShapePair> forbidden,
                            std::vector<ShapePair>& out) const {
-    const auto consider = [&](const Entry& e, const Entry& other) {
-        if (mayPair(proxies[e.shape], proxies[other.shape], forbidden)) {
-            out.push_back(ordered(e.shape, other.shape));
+    const std::span<const Entry> entries(m_entries);
+    std::array<std::uint32_t, 64> near{};  // entries that overlap the one at hand
+    // Tests entries from `j` on up to `lastKey`. Most runs are short and hits hard to foresee: each
+    // is written down and counted only if it overlaps, without a branch.
+    const auto join = [&](const Entry& e, std::uint32_t j, std::uint64_t lastKey) {
+        while (j < entries.size() && entries[j].key <= lastKey) {
+            std::size_t hits = 0;
+            for (; hits < near.size() && j < entries.size() && entries[j].key <= lastKey; ++j) {
+                near[hits] = j;
+                hits += overlaps(e.box, entries[j].box) ? 1u : 0u;
+            }
+            for (std::size_t k = 0; k < hits; ++k) {
+                const std::uint32_t other = entries[near[k]].shape;
+                if (mayPair(proxies[e.shape], proxies[other], forbidden)) {
+                    out.push_back(ordered(e.shape, other));
+                }
+            }
         }
     };
-    std::uint32_t nextRow = begin;  // cursor into the row above, rising with the entry
+    constexpr std::uint64_t nextRow = std::uint64_t{1} << 28;
+    constexpr std::size_t rowsAtOnce = 4;  // a box meets at most three rows of a coarser level
+    std::vector<std::array<Cursor, rowsAtOnce>> coarser(m_levels.size());
+    Cursor above;
     for (std::uint32_t i = begin; i < end; ++i) {
-        const Entry& e = m_entries[i];
-        const auto levelKey = e.key >> 56;
-        // The same row: this cell and the next.
-        for (std::uint32_t j = i + 1; j < m_entries.size() && m_entries[j].key <= e.key + 1; ++j) {
-            if (overlaps(e.box, m_entries[j].box)) consider(e, m_entries[j]);
-        }
-        // The row above: three cells.
-        const std::uint64_t above = e.key + (std::uint64_t{1} << 28);
-        if (nextRow <= i) nextRow = i + 1;
-        if (nextRow < m_entries.size() && m_entries[nextRow].key + 64 < above) {
-            nextRow = static_cast<std::uint32_t>(
-                std::lower_bound(m_entries.begin() + nextRow, m_entries.end(), above - 1,
-                                 [](const Entry& x, std::uint64_t key) { return x.key < key; }) -
-                m_entries.begin());
-        }
-        while (nextRow < m_entries.size() && m_entries[nextRow].key < above - 1) ++nextRow;
-        for (std::uint32_t j = nextRow; j < m_entries.size() && m_entries[j].key <= above + 1;
-             ++j) {
-            if (overlaps(e.box, m_entries[j].box)) consider(e, m_entries[j]);
-        }
-        for (const Level& level : m_levels) {
-            if (static_cast<std::uint64_t>(level.level - lowestLevel) <= levelKey) continue;
-            visitOverlaps(level, e.box, [&](const Entry& other) { consider(e, other); });
+        const Entry& e = entries[i];
+        // The same row: this cell and the next. The row above: three cells.
+        join(e, i + 1, e.key + 1);
+        join(e, above.first(entries, e.key + nextRow - 1), e.key + nextRow + 1);
+        for (std::size_t l = 0; l < m_levels.size(); ++l) {
+            const Level& level = m_levels[l];
+            if (static_cast<std::uint64_t>(level.level - lowestLevel) <= e.key >> 56) continue;
+            if (level.end - level.begin <= sparseLevel) {
+                join(e, level.begin, entries[level.end - 1].key);
+                continue;
+            }
+            const Cells cells = cellsAround(level.level, e.box);
+            for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
+                Cursor& cursor = coarser[l][static_cast<std::uint64_t>(row) % rowsAtOnce];
+                join(e, cursor.first(entries, keyOf(level.level, row, cells.column0)),
+                     keyOf(level.level, row, cells.column1));
+            }
         }
     }
 }
@@ -254,13 +333,14 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
     std::vector<ShapePair> fresh;
     if (m_fat.size() != tight.size()) {
         m_movedCount = static_cast<std::uint32_t>(tight.size());
-        rebuildAll(tight, travel);
+        rebuildAll(tight, travel, proxies);
         joinAll(proxies, forbidden, executor, fresh);
         m_pairs.swap(fresh);
         return true;
     }
     std::vector<std::uint32_t> moved;
     for (const std::uint32_t shape : active) {
+        if (proxies[shape].alone) continue;
         if (!contains(m_fat[shape], tight[shape])) moved.push_back(shape);
     }
     m_movedCount = static_cast<std::uint32_t>(moved.size());
@@ -272,7 +352,7 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
     moveEntries(moved);
     // A query searches every level from its top, a step of the join moves a cursor: several times
     // cheaper. Either way the same pairs come out.
-    if (moved.size() * 4 > tight.size()) {
+    if (moved.size() * 16 > tight.size()) {
         joinAll(proxies, forbidden, executor, fresh);
     } else {
         joinMoved(moved, proxies, forbidden, fresh);
@@ -281,12 +361,6 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
     const bool changed = fresh != m_pairs;
     m_pairs.swap(fresh);
     return changed;
-}
-
-void BroadPhase::query(const Bounds& box, std::vector<std::uint32_t>& out) const {
-    for (const Level& level : m_levels) {
-        visitOverlaps(level, box, [&](const Entry& entry) { out.push_back(entry.shape); });
-    }
 }
 
 }  // namespace huestep

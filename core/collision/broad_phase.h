@@ -25,6 +25,7 @@ struct ShapeProxy {
     Filter filter;
     bool dynamic = false;
     bool jointed = false;  ///< the body has a joint that forbids contact with its other body
+    bool alone = false;    ///< no other shape may pair with it: it stays out of the broad phase
 };
 
 /// Places of two shapes, a < b.
@@ -34,6 +35,10 @@ struct ShapePair {
     friend auto operator<=>(const ShapePair&, const ShapePair&) = default;
 };
 
+/// Marks the shapes that filters and types keep from every other shape. Where filters are of very
+/// many kinds nobody is marked.
+void markAlone(std::span<ShapeProxy> proxies);
+
 class BroadPhase {
  public:
     /// Forgets everything; the next update starts from nothing.
@@ -41,17 +46,14 @@ class BroadPhase {
 
     /// Brings the pair list up to date. `tight`: bounds by shape; `travel`: how far each shape may
     /// move in a few ticks (m), a hint; `active`: places of shapes that may have moved, others have
-    /// not; `forbidden`: sorted pairs of body places that a joint keeps from touching.
-    /// Returns whether `pairs()` changed.
+    /// not; `forbidden`: sorted pairs of body places that a joint keeps from
+    /// touching. Returns whether `pairs()` changed.
     bool update(std::span<const Bounds> tight, std::span<const Vec2> travel,
                 std::span<const std::uint32_t> active, std::span<const ShapeProxy> proxies,
                 std::span<const ShapePair> forbidden, Executor* executor);
 
     /// Sorted by (a, b).
     [[nodiscard]] std::span<const ShapePair> pairs() const { return m_pairs; }
-
-    /// Places of shapes whose fat box overlaps the box, in no particular order.
-    void query(const Bounds& box, std::vector<std::uint32_t>& out) const;
 
     /// Shapes that left their fat box in the last update.
     [[nodiscard]] std::uint32_t movedCount() const { return m_movedCount; }
@@ -62,13 +64,15 @@ class BroadPhase {
         std::uint32_t shape = 0;
         Bounds box;
     };
+    class Cursor;
     struct Level {
         int level = 0;
         std::uint32_t begin = 0;
         std::uint32_t end = 0;
     };
 
-    void rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel);
+    void rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel,
+                    std::span<const ShapeProxy> proxies);
     void moveEntries(std::span<const std::uint32_t> moved);
     void findLevels();
     template <class Visit>

@@ -43,7 +43,8 @@ Contact contactOf(const ShapePair& pair, const Shapes& known, std::span<const Sh
 void World::Data::layOutContacts() {
     Accelerators& acc = accelerators;
     const Shapes& shapes = acc.shapes;
-    std::vector<Contact> old = std::move(acc.contacts);
+    std::vector<Contact>& old = acc.lastContacts;
+    acc.contacts.swap(old);
     if (!acc.contactsValid) {
         // After a restore or a change of definitions the contacts are in the state alone.
         for (const ContactState& c : state.contacts) {

@@ -149,10 +149,11 @@ void World::Data::rebuildShapes() {
             if (info.type() != BodyType::Static) {
                 s.reach[body] = maxOf(s.reach[body], huestep::reachOf(hull));
             }
-            s.proxies.push_back({body, record.filter(), info.dynamic(), jointed[body] != 0});
+            s.proxies.push_back({body, record.filter(), info.dynamic(), jointed[body] != 0, false});
         }
     }
     s.first[bodies] = shape;
+    markAlone(s.proxies);
 }
 
 }  // namespace huestep

@@ -15,7 +15,7 @@ namespace {
 // meeting it at barriers costs more than it saves. Definitions alone decide.
 constexpr std::size_t parallelFrom = 512;
 constexpr std::uint32_t shapeGrain = 512;
-constexpr float travelTicks = 4.0f;  // how far ahead fat bounds look
+constexpr float travelTicks = 2.0f;  // how far ahead fat bounds look
 
 }  // namespace
 
@@ -112,7 +112,7 @@ void World::Data::findPairs(Executor* executor) {
     std::vector<std::uint32_t> active;
     for (const std::uint32_t body : bodies) {
         for (std::uint32_t s = shapes.first[body]; s < shapes.first[body + 1]; ++s) {
-            active.push_back(s);
+            if (!shapes.proxies[s].alone) active.push_back(s);
         }
     }
     const float ahead = travelTicks * state.info().stepSeconds;
