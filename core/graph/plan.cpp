@@ -124,64 +124,87 @@ void Builder::colourBatch(std::uint32_t batch) {
     layOut(batch, places, colours);
 }
 
-/// Runs of the batch in solving order; within a colour joints come first, then contacts, each in
-/// key order, contacts in blocks of 16 lanes of which the last is padded.
+/// Lanes of one kind of constraint: which constraint is in which, block by block of 16.
+struct Lanes {
+    std::vector<std::uint32_t>& sourceOf;
+    std::vector<ConstraintBodies>& places;
+
+    [[nodiscard]] std::uint32_t blocks() const {
+        return static_cast<std::uint32_t>(sourceOf.size()) / blockLanes;
+    }
+    /// Adds whole blocks for `count` constraints; the rest of the last one is padding.
+    void grow(std::uint32_t count) {
+        const std::uint32_t lanes = (count + blockLanes - 1) / blockLanes * blockLanes;
+        sourceOf.resize(sourceOf.size() + lanes, none);
+        places.resize(sourceOf.size());
+    }
+};
+
+/// Runs of the batch in solving order; within a colour joints come first, then joints in lanes,
+/// then contacts, each in key order. The overflow is solved one by one in key order, so its joints
+/// stay together.
 void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> places,
                      std::span<const std::uint8_t> colours) {
-    std::array<std::uint32_t, colourCount> contacts{};
-    std::array<std::uint32_t, colourCount> joints{};
+    enum Kind : std::uint8_t { Joint, Point, ContactLane };
     const std::uint32_t begin = linkStart[batch];
+    const auto kindOf = [&](std::uint32_t link, std::uint8_t colour) {
+        if (link >= plan.jointLinks) return ContactLane;
+        return plan.links[link].pointAlone && !isSerial(colour) ? Point : Joint;
+    };
+    std::array<std::array<std::uint32_t, 3>, colourCount> counts{};
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
         const std::uint32_t link = linkOrder[begin + i];
         plan.colourOfLink[link] = colours[i];
-        ++(link < plan.jointLinks ? joints : contacts)[colours[i]];
+        ++counts[colours[i]][kindOf(link, colours[i])];
     }
+    Lanes contacts{plan.contactOfLane, plan.lanePlaces};
+    Lanes points{plan.pointOfLane, plan.pointPlaces};
     Batch& b = plan.batches[batch];
-    const auto blocksSoFar = [this] {
-        return static_cast<std::uint32_t>(plan.contactOfLane.size()) / blockLanes;
-    };
     b.firstColour = static_cast<std::uint32_t>(plan.runs.size());
-    b.firstBlock = blocksSoFar();
+    b.firstBlock = contacts.blocks();
+    b.firstPointBlock = points.blocks();
     b.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
-    std::array<std::uint32_t, colourCount> nextLane{};
-    std::array<std::uint32_t, colourCount> nextJoint{};
+    std::array<std::array<std::uint32_t, 3>, colourCount> next{};
     for (std::size_t c = 0; c < colourCount; ++c) {
-        if (contacts[c] + joints[c] == 0) continue;
+        const auto& count = counts[c];
+        if (count[Joint] + count[Point] + count[ContactLane] == 0) continue;
         ColourRun run;
         run.colour = static_cast<std::uint8_t>(c);
-        run.firstBlock = blocksSoFar();
-        run.contactCount = contacts[c];
+        run.firstBlock = contacts.blocks();
+        run.contactCount = count[ContactLane];
         run.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
-        run.jointCount = joints[c];
+        run.jointCount = count[Joint];
+        run.firstPointBlock = points.blocks();
+        run.pointCount = count[Point];
         plan.runs.push_back(run);
-        nextLane[c] = run.firstBlock * blockLanes;
-        nextJoint[c] = run.firstJoint;
-        const std::uint32_t lanes = (contacts[c] + blockLanes - 1) / blockLanes * blockLanes;
-        plan.contactOfLane.resize(plan.contactOfLane.size() + lanes, none);
-        plan.lanePlaces.resize(plan.contactOfLane.size());
-        plan.jointOrder.resize(plan.jointOrder.size() + joints[c]);
+        next[c] = {run.firstJoint, run.firstPointBlock * blockLanes, run.firstBlock * blockLanes};
+        contacts.grow(count[ContactLane]);
+        points.grow(count[Point]);
+        plan.jointOrder.resize(plan.jointOrder.size() + count[Joint]);
         plan.jointPlaces.resize(plan.jointOrder.size());
+        if (isSerial(run.colour)) plan.overflow += count[Joint] + count[ContactLane];
     }
     b.endColour = static_cast<std::uint32_t>(plan.runs.size());
-    b.endBlock = blocksSoFar();
+    b.endBlock = contacts.blocks();
+    b.endPointBlock = points.blocks();
     b.endJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
-    for (const std::uint8_t c : {overflowColour, fixedOverflowColour}) {
-        plan.overflow += contacts[c] + joints[c];
-    }
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
         const std::uint32_t link = linkOrder[begin + i];
-        if (link < plan.jointLinks) {
-            const std::uint32_t at = nextJoint[colours[i]]++;
-            plan.jointOrder[at] = plan.links[link].source;
+        const Kind kind = kindOf(link, colours[i]);
+        const std::uint32_t at = next[colours[i]][kind]++;
+        const std::uint32_t source = plan.links[link].source;
+        if (kind == Joint) {
+            plan.jointOrder[at] = source;
             plan.jointPlaces[at] = places[i];
         } else {
-            const std::uint32_t at = nextLane[colours[i]]++;
-            plan.contactOfLane[at] = plan.links[link].source;
-            plan.lanePlaces[at] = places[i];
-            for (const BodyPlace place : {places[i].a, places[i].b}) {
-                plan.hasContact[static_cast<std::size_t>(readPlace(place))] = 1;
-            }
+            const Lanes& lanes = kind == Point ? points : contacts;
+            lanes.sourceOf[at] = source;
+            lanes.places[at] = places[i];
+        }
+        if (kind != ContactLane) continue;
+        for (const BodyPlace place : {places[i].a, places[i].b}) {
+            plan.hasContact[static_cast<std::size_t>(readPlace(place))] = 1;
         }
     }
 }
@@ -199,6 +222,8 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.lanePlaces.clear();
     plan.jointOrder.clear();
     plan.jointPlaces.clear();
+    plan.pointOfLane.clear();
+    plan.pointPlaces.clear();
     plan.colourOfLink.assign(plan.links.size(), 0);
     plan.colours = plan.overflow = 0;
 

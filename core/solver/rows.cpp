@@ -68,27 +68,40 @@ void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range p
     }
 }
 
-void SoftStep::prepareJoints(const Plan& plan, const SolverWorld& world, Range joints) {
+JointRow SoftStep::jointRow(const SolverWorld& world, std::uint32_t joint,
+                            const ConstraintBodies& places) const {
     const float h = world.stepSeconds / static_cast<float>(world.substeps);
+    const JointInfo& info = world.joints[joint];
+    // A static body has no solver place: its pose comes from the world.
+    const ConstraintPlaces& bodies = world.jointBodies[joint];
+    JointRow row = prepareJoint(info, world.jointImpulses[joint], joint,
+                                world.motions[bodies.a].pose(), world.motions[bodies.b].pose(), h);
+    row.bodyA = info.kind() == JointKind::Mouse ? fixedWorld : places.a;
+    row.bodyB = places.b;
+    const Source& a = m_sources[static_cast<std::size_t>(readPlace(row.bodyA))];
+    const Source& b = m_sources[static_cast<std::size_t>(readPlace(row.bodyB))];
+    row.mA = a.inverseMass;
+    row.iA = a.inverseInertia;
+    row.mB = b.inverseMass;
+    row.iB = b.inverseInertia;
+    return row;
+}
+
+void SoftStep::prepareJoints(const Plan& plan, const SolverWorld& world, Range joints) {
     for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
-        const std::uint32_t place = plan.jointOrder[i];
-        const JointInfo& info = world.joints[place];
-        ConstraintBodies at = plan.jointPlaces[i];
-        if (info.kind() == JointKind::Mouse) at.a = fixedWorld;
-        // A static body has no solver place: its pose comes from the world.
-        const ConstraintPlaces& bodies = world.jointBodies[place];
-        m_joints[i] =
-            prepareJoint(info, world.jointImpulses[place], place, world.motions[bodies.a].pose(),
-                         world.motions[bodies.b].pose(), h);
-        JointRow& row = m_joints[i];
-        row.bodyA = at.a;
-        row.bodyB = at.b;
-        const Source& a = m_sources[static_cast<std::size_t>(readPlace(at.a))];
-        const Source& b = m_sources[static_cast<std::size_t>(readPlace(at.b))];
-        row.mA = a.inverseMass;
-        row.iA = a.inverseInertia;
-        row.mB = b.inverseMass;
-        row.iB = b.inverseInertia;
+        m_joints[i] = jointRow(world, plan.jointOrder[i], plan.jointPlaces[i]);
+    }
+}
+
+void SoftStep::preparePoints(const Plan& plan, const SolverWorld& world, Range blocks) {
+    for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
+        PointBlock& block = m_points[at / blockLanes];
+        const std::uint32_t joint = plan.pointOfLane[at];
+        if (joint == none) {
+            clearPointLane(block, at % blockLanes);
+        } else {
+            setPointLane(block, at % blockLanes, jointRow(world, joint, plan.pointPlaces[at]));
+        }
     }
 }
 
@@ -199,6 +212,16 @@ void SoftStep::storeBlocks(const Plan& plan, const SolverWorld& world, Range blo
 void SoftStep::storeJoints(const SolverWorld& world, Range joints) const {
     for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
         world.jointImpulses[m_joints[i].joint] = storedImpulses(m_joints[i]);
+    }
+}
+
+void SoftStep::storePoints(const Plan& plan, const SolverWorld& world, Range blocks) const {
+    for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
+        const std::uint32_t joint = plan.pointOfLane[at];
+        if (joint == none) continue;
+        const PointBlock& block = m_points[at / blockLanes];
+        world.jointImpulses[joint].point = {finiteOrZero(block.impulseX[at % blockLanes]),
+                                            finiteOrZero(block.impulseY[at % blockLanes])};
     }
 }
 

@@ -23,6 +23,10 @@ constexpr std::uint32_t bodyGrain = 256;
 constexpr std::uint32_t blockGrain = 16;
 constexpr std::uint32_t jointGrain = 128;
 
+std::uint32_t blocksOf(std::uint32_t lanes) {
+    return (lanes + blockLanes - 1) / blockLanes;
+}
+
 /// Worker's share of [0, count): contiguous, sizes differing by at most one.
 struct Share {
     std::uint32_t begin, end;
@@ -43,7 +47,8 @@ ContactFeatures operator|(ContactFeatures a, ContactFeatures b) {
 
 /// Constants of all passes over one batch.
 struct SoftStep::Pass {
-    const ContactKernels* kernels;
+    const ContactKernels* contacts;
+    const PointKernels* points;
     float h;
     std::uint32_t substeps;
     ContactPass moving;  // between two bodies that move
@@ -53,9 +58,10 @@ struct SoftStep::Pass {
     void use(ContactFeatures features) { moving.features = fixed.features = features; }
 };
 
-SoftStep::Pass SoftStep::makePass(const SolverWorld& world, const ContactKernels& kernels) {
+SoftStep::Pass SoftStep::makePass(const SolverWorld& world, Simd simd) {
     Pass pass{};
-    pass.kernels = &kernels;
+    pass.contacts = &contactKernels(simd);
+    pass.points = &pointKernels(simd);
     pass.h = world.stepSeconds / static_cast<float>(world.substeps);
     pass.substeps = world.substeps;
     const float rate = 1.0f / pass.h;
@@ -86,19 +92,30 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
         }
         barrier();
     };
-    const auto overColours = [&](auto&& onJoint, ContactKernel ContactKernels::*kernel) {
+    const auto overColours = [&](auto&& onJoint, PointKernel pointKernel, const JointPass& joint,
+                                 ContactKernel ContactKernels::*kernel) {
         for (std::uint32_t c = batch.firstColour; c < batch.endColour; ++c) {
             const ColourRun& run = plan.runs[c];
             // Constraints of the overflow share bodies: one worker, one by one, in key order.
             const bool serial = isSerial(run.colour);
-            const ContactKernels& kernels = serial ? contactKernels(Simd::Scalar) : *pass.kernels;
+            const ContactKernels& kernels = serial ? contactKernels(Simd::Scalar) : *pass.contacts;
             if (!serial || worker == 0) {
-                const Share joints(run.jointCount, serial ? 0 : worker, serial ? 1 : workers);
+                const auto shareOf = [&](std::uint32_t count) {
+                    return Share(count, serial ? 0 : worker, serial ? 1 : workers);
+                };
+                const Share joints = shareOf(run.jointCount);
                 for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
                     onJoint(m_joints[run.firstJoint + i]);
                 }
-                const std::uint32_t blocks = (run.contactCount + blockLanes - 1) / blockLanes;
-                const Share share(blocks, serial ? 0 : worker, serial ? 1 : workers);
+                const Share points = shareOf(blocksOf(run.pointCount));
+                if (pointKernel != nullptr && points.begin < points.end) {
+                    const std::uint32_t first = points.begin * blockLanes;
+                    const std::uint32_t last = std::min(points.end * blockLanes, run.pointCount);
+                    pointKernel(m_bodies.data(),
+                                m_points.data() + run.firstPointBlock + points.begin, last - first,
+                                joint);
+                }
+                const Share share = shareOf(blocksOf(run.contactCount));
                 if (share.begin < share.end) {
                     const std::uint32_t first = share.begin * blockLanes;
                     const std::uint32_t last = std::min(share.end * blockLanes, run.contactCount);
@@ -119,9 +136,9 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
             b.w = (b.w + h * s.angularAcceleration) * s.angularFactor;
         });
         overColours([&](const JointRow& row) { warmStartJoint(bodies, row); },
-                    &ContactKernels::warmStart);
+                    pass.points->warmStart, pass.biased, &ContactKernels::warmStart);
         overColours([&](JointRow& row) { solveJoint(bodies, row, pass.biased); },
-                    &ContactKernels::solve);
+                    pass.points->solve, pass.biased, &ContactKernels::solve);
         overBodies([h](SolverBody& b, const Source& s) {
             b.dx += h * (b.vx - s.lag.x);
             b.dy += h * (b.vy - s.lag.y);
@@ -130,10 +147,10 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
             b.ds = q.s;
         });
         overColours([&](JointRow& row) { solveJoint(bodies, row, pass.relaxed); },
-                    &ContactKernels::relax);
+                    pass.points->solve, pass.relaxed, &ContactKernels::relax);
     }
     if (pass.moving.features.restitution) {
-        overColours([](const JointRow&) {}, &ContactKernels::restitute);
+        overColours([](const JointRow&) {}, nullptr, pass.relaxed, &ContactKernels::restitute);
     }
 }
 
@@ -149,6 +166,8 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
          [&](Range range, std::uint32_t) { prepareBodies(plan, world, range); });
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { prepareJoints(plan, world, range); });
+    over(batch.firstPointBlock, batch.endPointBlock, blockGrain,
+         [&](Range range, std::uint32_t) { preparePoints(plan, world, range); });
     const std::uint32_t blocks = batch.endBlock - batch.firstBlock;
     auto features = perBlock<ContactFeatures>(blocks, blockGrain);
     over(batch.firstBlock, batch.endBlock, blockGrain, [&](Range range, std::uint32_t index) {
@@ -174,17 +193,20 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { storeJoints(world, range); });
+    over(batch.firstPointBlock, batch.endPointBlock, blockGrain,
+         [&](Range range, std::uint32_t) { storePoints(plan, world, range); });
     timer.done(Stage::Store);
 }
 
-void SoftStep::solve(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
-                     Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer) {
+void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Executor* executor,
+                     std::vector<ContactHit>& hits, StageTimer& timer) {
     m_bodies.resize(plan.bodyOfPlace.size());
     m_sources.resize(plan.bodyOfPlace.size());
     m_joints.resize(plan.jointOrder.size());
+    m_points.resize(plan.pointOfLane.size() / blockLanes);
     m_blocks.resize(plan.contactOfLane.size() / blockLanes);
     prepareBodies(plan, world, {0, 1});  // the fixed world
-    const Pass pass = makePass(world, kernels);
+    const Pass pass = makePass(world, simd);
 
     std::vector<std::uint32_t> small;
     for (std::uint32_t i = 0; i < plan.batches.size(); ++i) {
@@ -203,11 +225,13 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, const ContactKe
             ContactFeatures features;
             prepareBodies(plan, world, {batch.firstPlace, batch.endPlace});
             prepareJoints(plan, world, {batch.firstJoint, batch.endJoint});
+            preparePoints(plan, world, {batch.firstPointBlock, batch.endPointBlock});
             prepareBlocks(plan, world, {batch.firstBlock, batch.endBlock}, features);
             mine.use(features);
             substeps(plan, batch, mine, 0, 1, nullptr);
             storeBlocks(plan, world, {batch.firstBlock, batch.endBlock}, found[i]);
             storeJoints(world, {batch.firstJoint, batch.endJoint});
+            storePoints(plan, world, {batch.firstPointBlock, batch.endPointBlock});
         }
     });
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());

@@ -12,6 +12,7 @@
 #include "core/contact/contact.h"
 #include "core/graph/plan.h"
 #include "core/joint/joint_row.h"
+#include "core/joint/point_block.h"
 #include "core/parallel/executor.h"
 #include "core/solver/contact_block.h"
 #include "core/world/event.h"
@@ -53,8 +54,8 @@ class SoftStep {
     /// joints. A giant batch goes through each stage on all threads; any other goes through all of
     /// them on one thread, while its rows are in that core's cache. `hits` gets contacts that met
     /// hard, by key.
-    void solve(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
-               Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer);
+    void solve(const Plan& plan, const SolverWorld& world, Simd simd, Executor* executor,
+               std::vector<ContactHit>& hits, StageTimer& timer);
 
     /// Poses and velocities back into motions, free flight included; `broken` gets the places of
     /// bodies that turned non-finite or left the world, which stay where they were, at rest.
@@ -89,9 +90,13 @@ class SoftStep {
     void storeBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
                      std::vector<ContactHit>& hits) const;
     void storeJoints(const SolverWorld& world, Range joints) const;
+    [[nodiscard]] JointRow jointRow(const SolverWorld& world, std::uint32_t joint,
+                                    const ConstraintBodies& places) const;
+    void preparePoints(const Plan& plan, const SolverWorld& world, Range blocks);
+    void storePoints(const Plan& plan, const SolverWorld& world, Range blocks) const;
 
     // soft_step.cpp
-    static Pass makePass(const SolverWorld& world, const ContactKernels& kernels);
+    static Pass makePass(const SolverWorld& world, Simd simd);
     void solveGiant(const Plan& plan, const SolverWorld& world, const Batch& batch, Pass pass,
                     Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer);
     void substeps(const Plan& plan, const Batch& batch, const Pass& pass, int worker, int workers,
@@ -101,6 +106,7 @@ class SoftStep {
     std::vector<Source> m_sources;     // by solver place
     std::vector<ContactBlock> m_blocks;
     std::vector<JointRow> m_joints;  // in solving order
+    std::vector<PointBlock> m_points;
 };
 
 }  // namespace huestep

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/parallel/over_range.h"
-#include "core/solver/contact_kernels.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
@@ -54,7 +53,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     SoftStep& solver = accelerators.solver;
     const Plan& plan = accelerators.plan;
     // Contacts, joints, motions → rows → impulses, hits; times are kept by stage within.
-    solver.solve(plan, world, contactKernels(with.simd), executor, events.hits, timer);
+    solver.solve(plan, world, with.simd, executor, events.hits, timer);
     std::vector<std::uint32_t> broken;
     solver.finish(plan, world, executor, broken);  // rows → motions
     for (const std::uint32_t body : broken) events.quarantined.push_back(state.bodies[body].id);
@@ -137,7 +136,8 @@ void World::Data::updatePlan() {
     const auto moves = [&](std::uint32_t body) { return activity[body] == movesNow; };
     for (std::uint32_t i = 0; i < acc.shapes.jointBodies.size(); ++i) {
         const ConstraintPlaces& j = acc.shapes.jointBodies[i];
-        if (moves(j.a) || moves(j.b)) links.push_back({j.a, j.b, i});
+        if (!moves(j.a) && !moves(j.b)) continue;
+        links.push_back({j.a, j.b, i, isPointAlone(state.joints[i], state.jointImpulses[i])});
     }
     const auto jointLinks = static_cast<std::uint32_t>(links.size());
     for (std::uint32_t i = 0; i < acc.contacts.size(); ++i) {

@@ -40,6 +40,7 @@ Case randomCase(Random& random) {
     c.jointLinks = c.links.empty() ? 0 : random.below(c.links.size());
     for (std::uint32_t i = 0; i < c.links.size(); ++i) {
         c.links[i].source = i < c.jointLinks ? i : i - c.jointLinks;
+        c.links[i].pointAlone = i < c.jointLinks && !random.once(3);
     }
     return c;
 }
@@ -83,7 +84,7 @@ void expectSound(const Case& c, const Plan& plan) {
             const ColourRun& run = plan.runs[r];
             ASSERT_GT(static_cast<int>(run.colour), lastColour) << "in solving order";
             lastColour = run.colour;
-            inBatch += run.contactCount + run.jointCount;
+            inBatch += run.contactCount + run.pointCount + run.jointCount;
             std::set<BodyPlace> written;
             std::uint32_t lastLink = 0;
             const auto visit = [&](std::uint32_t linkIndex, const ConstraintBodies& places) {
@@ -104,6 +105,19 @@ void expectSound(const Case& c, const Plan& plan) {
                 const std::uint32_t joint = plan.jointOrder[run.firstJoint + i];
                 ++jointSeen[joint];
                 visit(joint, plan.jointPlaces[run.firstJoint + i]);
+            }
+            lastLink = 0;
+            const std::uint32_t pointLanes =
+                (run.pointCount + blockLanes - 1) / blockLanes * blockLanes;
+            for (std::uint32_t i = 0; i < pointLanes; ++i) {
+                const std::uint32_t at = run.firstPointBlock * blockLanes + i;
+                const std::uint32_t joint = plan.pointOfLane[at];
+                ASSERT_EQ(joint == none, i >= run.pointCount) << "padding comes last";
+                if (joint == none) continue;
+                ++jointSeen[joint];
+                ASSERT_TRUE(c.links[joint].pointAlone);
+                ASSERT_FALSE(isSerial(run.colour)) << "the overflow is solved in key order";
+                visit(joint, plan.pointPlaces[at]);
             }
             const std::uint32_t lanes =
                 (run.contactCount + blockLanes - 1) / blockLanes * blockLanes;
