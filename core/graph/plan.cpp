@@ -10,7 +10,7 @@ namespace {
 /// Working memory of one call.
 struct Builder {
     Plan& plan;
-    const PlanBodies& bodies;
+    std::span<const std::uint8_t> moves;  // by body
     std::uint32_t batchSize;
 
     std::vector<std::uint32_t> constraintsOf;  // island representative → constraints
@@ -20,7 +20,7 @@ struct Builder {
     std::vector<BodyPlace> placeOf;            // body → solver place, in the batch at hand
 
     [[nodiscard]] std::uint32_t islandOf(const Link& link) const {
-        return plan.islandOf[bodies.moves[link.a] ? link.a : link.b];
+        return plan.islandOf[moves[link.a] ? link.a : link.b];
     }
 
     void findAllIslands();
@@ -33,9 +33,9 @@ struct Builder {
 };
 
 void Builder::findAllIslands() {
-    const auto count = static_cast<std::uint32_t>(bodies.moves.size());
+    const auto count = static_cast<std::uint32_t>(moves.size());
     UnionFind sets;
-    findIslands(plan.links, bodies.moves, sets);
+    findIslands(plan.links, moves, sets);
     plan.islandOf.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) plan.islandOf[i] = sets.find(i);
     constraintsOf.assign(count, 0);
@@ -83,7 +83,7 @@ void Builder::sortLinks() {
     }
 }
 
-/// The batch's solver bodies: copies of the kinematic bodies it touches, then its own by id.
+/// The batch's solver bodies: copies of the static and kinematic ones it touches, then its own.
 /// (`plan.bodyOfPlace` holds the own bodies of all batches before; see makePlan.)
 void Builder::placeBodies(std::uint32_t batch) {
     Batch& b = plan.batches[batch];
@@ -95,7 +95,7 @@ void Builder::placeBodies(std::uint32_t batch) {
     for (std::uint32_t i = linkStart[batch]; i < linkStart[batch + 1]; ++i) {
         const Link& link = plan.links[linkOrder[i]];
         for (const std::uint32_t body : {link.a, link.b}) {
-            if (!bodies.kinematic[body]) continue;
+            if (moves[body]) continue;
             const BodyPlace known = placeOf[body];
             if (known == fixedWorld || static_cast<std::uint32_t>(known) < b.firstPlace) {
                 place(body);
@@ -112,8 +112,7 @@ void Builder::colourBatch(std::uint32_t batch) {
     for (std::uint32_t i = linkStart[batch]; i < linkStart[batch + 1]; ++i) {
         const Link& link = plan.links[linkOrder[i]];
         const auto placeFor = [&](std::uint32_t body) -> BodyPlace {
-            if (bodies.moves[body]) return placeOf[body];
-            return bodies.kinematic[body] ? ~placeOf[body] : fixedWorld;
+            return moves[body] ? placeOf[body] : ~placeOf[body];
         };
         const ConstraintBodies c{placeFor(link.a), placeFor(link.b)};
         places.push_back(c);
@@ -212,7 +211,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
 }  // namespace
 
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, const PlanBodies& bodies,
+              std::vector<std::uint32_t>&& awake, std::span<const std::uint8_t> moves,
               std::uint32_t batchSize) {
     plan.links = std::move(links);
     plan.jointLinks = jointLinks;
@@ -227,11 +226,11 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.colourOfLink.assign(plan.links.size(), 0);
     plan.colours = plan.overflow = 0;
 
-    Builder builder{plan, bodies, batchSize, {}, {}, {}, {}, {}};
+    Builder builder{plan, moves, batchSize, {}, {}, {}, {}, {}};
     builder.findAllIslands();
     builder.packBatches();
     builder.sortLinks();
-    builder.placeOf.assign(bodies.moves.size(), fixedWorld);
+    builder.placeOf.assign(moves.size(), fixedWorld);
     plan.bodyOfPlace.assign(1, none);
     plan.hasContact.assign(1, 0);
 

@@ -67,16 +67,11 @@ struct Plan {
     std::uint32_t overflow = 0;  ///< constraints in overflow
 };
 
-/// What the plan needs to know of the bodies; place i is body i.
-struct PlanBodies {
-    std::span<const std::uint8_t> moves;      ///< awake and dynamic
-    std::span<const std::uint8_t> kinematic;  ///< read by the solver, with a velocity
-};
-
-/// Makes the plan. `links` and `awake` are moved in; `batchSize` may differ in tests only: no
-/// result depends on it.
+/// Makes the plan. `links` and `awake` are moved in; `moves`: by body, whether it is awake and
+/// dynamic; others are read by the solver and never written; `batchSize` may differ in tests only:
+/// no result depends on it.
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, const PlanBodies& bodies,
+              std::vector<std::uint32_t>&& awake, std::span<const std::uint8_t> moves,
               std::uint32_t batchSize = standardBatchSize);
 
 }  // namespace huestep

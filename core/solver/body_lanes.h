@@ -41,22 +41,31 @@ HUESTEP_INLINE F16 join(const F8& low, const F8& high) {
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-/// Four floats at `offset` of each lane's body, as columns.
-HUESTEP_INLINE void gather(const SolverBody* bodies, const BodyPlace* place, int offset, F4& c0,
+HUESTEP_INLINE const float* floatsOf(const SolverBody& body) {
+    return &body.vx;
+}
+HUESTEP_INLINE const float* floatsOf(const SolverPose& pose) {
+    return &pose.x;
+}
+
+/// Four floats at `offset` of each lane's body or pose, as columns.
+template <class Record>
+HUESTEP_INLINE void gather(const Record* records, const BodyPlace* place, int offset, F4& c0,
                            F4& c1, F4& c2, F4& c3) {
     const auto row = [&](int lane) __attribute__((always_inline)) {
-        return &bodies[readPlace(place[lane])].vx + offset;
+        return floatsOf(records[readPlace(place[lane])]) + offset;
     };
     transpose4(row(0), row(1), row(2), row(3), c0, c1, c2, c3);
 }
 
 /// Eight lanes: each 128-bit half is four bodies; halves are joined before transposing, so the
 /// transpose costs no more instructions than that of four.
-HUESTEP_INLINE void gather(const SolverBody* bodies, const BodyPlace* place, int offset, F8& c0,
+template <class Record>
+HUESTEP_INLINE void gather(const Record* records, const BodyPlace* place, int offset, F8& c0,
                            F8& c1, F8& c2, F8& c3) {
     const auto pair = [&](int lane) __attribute__((always_inline)) {
-        return join(loadLanes<4>(&bodies[readPlace(place[lane])].vx + offset),
-                    loadLanes<4>(&bodies[readPlace(place[lane + 4])].vx + offset));
+        return join(loadLanes<4>(floatsOf(records[readPlace(place[lane])]) + offset),
+                    loadLanes<4>(floatsOf(records[readPlace(place[lane + 4])]) + offset));
     };
     const F8 a = pair(0), b = pair(1), c = pair(2), d = pair(3);
     const F8 ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -69,11 +78,12 @@ HUESTEP_INLINE void gather(const SolverBody* bodies, const BodyPlace* place, int
     c3 = __builtin_shufflevector(ab1, cd1, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-HUESTEP_INLINE void gather(const SolverBody* bodies, const BodyPlace* place, int offset, F16& c0,
+template <class Record>
+HUESTEP_INLINE void gather(const Record* records, const BodyPlace* place, int offset, F16& c0,
                            F16& c1, F16& c2, F16& c3) {
     F8 l0, l1, l2, l3, h0, h1, h2, h3;
-    gather(bodies, place, offset, l0, l1, l2, l3);
-    gather(bodies, place + 8, offset, h0, h1, h2, h3);
+    gather(records, place, offset, l0, l1, l2, l3);
+    gather(records, place + 8, offset, h0, h1, h2, h3);
     c0 = join(l0, h0);
     c1 = join(l1, h1);
     c2 = join(l2, h2);
@@ -103,6 +113,23 @@ HUESTEP_INLINE DeltaLanes<W> gatherDeltas(const SolverBody* bodies, const BodyPl
         gather(bodies, place, 4, d.dx, d.dy, d.dc, d.ds);
     }
     return d;
+}
+
+template <int W>
+struct PoseLanes {
+    LaneF<W> x, y, c, s;
+};
+
+template <int W>
+HUESTEP_INLINE PoseLanes<W> gatherPoses(const SolverPose* poses, const BodyPlace* place) {
+    PoseLanes<W> p;
+    if constexpr (W == 1) {
+        const SolverPose& pose = poses[readPlace(place[0])];
+        p = {pose.x, pose.y, pose.c, pose.s};
+    } else {
+        gather(poses, place, 0, p.x, p.y, p.c, p.s);
+    }
+    return p;
 }
 
 /// Where a lane's velocity goes: its body, or `trash` for a body that is never written.

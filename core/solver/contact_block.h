@@ -18,8 +18,14 @@ struct alignas(32) SolverBody {
     float dc = 1, ds = 0;  ///< turned since the start of the step
 };
 
+/// Where a body was at the start of the step, by the same places: m, and its rotation.
+struct alignas(16) SolverPose {
+    float x = 0, y = 0;
+    float c = 1, s = 0;
+};
+
 /// The place of a body in the solver's array: a static or kinematic one is `~place` (negative):
-/// it is read and never written. Place 0 is the fixed world: zero velocity, no motion.
+/// it is read and never written. Place 0 is the world itself, at its origin.
 using BodyPlace = std::int32_t;
 inline constexpr BodyPlace fixedWorld = ~BodyPlace{0};
 constexpr BodyPlace readPlace(BodyPlace p) {
@@ -32,8 +38,9 @@ struct alignas(64) ContactPointRows {
     using Row = float[blockLanes];
     Row anchorAx, anchorAy;  ///< m, from A's centre, world axes, fixed over the step
     Row anchorBx, anchorBy;
-    Row separation;  ///< m, at the start, less n·(rB − rA)
-    Row normalMass;  ///< kg, of the row; 0 where there is no point
+    Row madeSeparation;  ///< m, when the manifold was made
+    Row separation;      ///< m, at the start, less n·(rB − rA)
+    Row normalMass;      ///< kg, of the row; 0 where there is no point
     Row tangentMass;
     Row normalImpulse;  ///< N·s, accumulated in the current substep's cycle
     Row tangentImpulse;
@@ -48,6 +55,8 @@ struct alignas(64) ContactBlock {
     Row inverseMassA, inverseInertiaA;
     Row inverseMassB, inverseInertiaB;
     Row normalX, normalY;
+    Row cosineA, sineA;  ///< of the bodies' rotations when the manifold was made
+    Row cosineB, sineB;
     Row friction;
     ContactPointRows points[2];
     Row restitution;
@@ -75,6 +84,11 @@ struct ContactFeatures {
     bool restitution = false;
 };
 
+constexpr ContactFeatures operator|(ContactFeatures a, ContactFeatures b) {
+    return {a.friction || b.friction, a.rolling || b.rolling, a.tangentSpeed || b.tangentSpeed,
+            a.restitution || b.restitution};
+}
+
 /// Constants of a pass.
 struct ContactPass {
     Softness soft;
@@ -88,7 +102,14 @@ struct ContactPass {
 using ContactKernel = void (*)(SolverBody* bodies, ContactBlock* blocks, std::uint32_t count,
                                const ContactPass& pass);
 
+/// Brings `blocks` whole blocks to the start of a step: separations and approach speeds from the
+/// bodies' poses and velocities, of all 16 lanes. Everything else of a row holds as long as its
+/// manifold does.
+using ContactRefresh = void (*)(const SolverBody* bodies, const SolverPose* poses,
+                                ContactBlock* blocks, std::uint32_t count);
+
 struct ContactKernels {
+    ContactRefresh refresh = nullptr;
     ContactKernel warmStart = nullptr;
     ContactKernel solve = nullptr;  ///< normals with bias
     ContactKernel relax = nullptr;  ///< normals without bias, then friction and rolling

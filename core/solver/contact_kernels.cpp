@@ -67,6 +67,40 @@ HUESTEP_INLINE void applyImpulse(Pair<W>& pair, const Anchors<W>& r, const LaneF
     pair.b.w = pair.b.w + pair.inverseInertiaB * (r.bx * py - r.by * px);
 }
 
+/// How far a body has turned since its manifold was made: q₀⁻¹ q.
+template <int W>
+HUESTEP_INLINE void turnedSince(const LaneF<W>& c0, const LaneF<W>& s0, const PoseLanes<W>& now,
+                                LaneF<W>& c, LaneF<W>& s) {
+    c = c0 * now.c + s0 * now.s;
+    s = c0 * now.s - s0 * now.c;
+}
+
+/// Separations follow the bodies from where the manifold was made, anchors and normal stay: how far
+/// the anchors have come apart since, when they met. The passes add n·(rB − rA) and how the anchors
+/// move from here on.
+template <int W>
+HUESTEP_INLINE void refreshLanes(const SolverBody* bodies, const SolverPose* poses,
+                                 ContactBlock& block, int lane) {
+    const Pair<W> pair(bodies, block, lane);
+    const PoseLanes<W> a = gatherPoses<W>(poses, block.bodyA + lane);
+    const PoseLanes<W> b = gatherPoses<W>(poses, block.bodyB + lane);
+    LaneF<W> cA, sA, cB, sB;
+    turnedSince<W>(loadLanes<W>(block.cosineA + lane), loadLanes<W>(block.sineA + lane), a, cA, sA);
+    turnedSince<W>(loadLanes<W>(block.cosineB + lane), loadLanes<W>(block.sineB + lane), b, cB, sB);
+    for (ContactPointRows& p : block.points) {
+        const Anchors<W> r(p, lane);
+        const LaneF<W> x = (b.x - a.x) + ((cB * r.bx - sB * r.by) - (cA * r.ax - sA * r.ay));
+        const LaneF<W> y = (b.y - a.y) + ((sB * r.bx + cB * r.by) - (sA * r.ax + cA * r.ay));
+        const LaneF<W> met = pair.nx * (r.bx - r.ax) + pair.ny * (r.by - r.ay);
+        const LaneF<W> made = loadLanes<W>(p.madeSeparation + lane);
+        storeLanes<W>(p.separation + lane, (made + (pair.nx * x + pair.ny * y)) - met);
+        LaneF<W> vx, vy;
+        relativeVelocity<W>(pair, r, vx, vy);
+        storeLanes<W>(p.approach + lane, vx * pair.nx + vy * pair.ny);
+        storeLanes<W>(p.maxNormalImpulse + lane, splat<W>(0.0f));
+    }
+}
+
 template <int W>
 HUESTEP_INLINE void warmStartLanes(SolverBody* bodies, ContactBlock& block, int lane,
                                    const ContactPass& pass) {
@@ -234,12 +268,22 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
                            static_cast<int>(first % blockLanes), pass);                    \
         }                                                                                  \
     }
+#define HUESTEP_REFRESH(W, attributes)                                            \
+    attributes void refresh##W(const SolverBody* bodies, const SolverPose* poses, \
+                               ContactBlock* blocks, std::uint32_t count) {       \
+        for (std::uint32_t i = 0; i < count; ++i) {                               \
+            for (int lane = 0; lane < blockLanes; lane += W) {                    \
+                refreshLanes<W>(bodies, poses, blocks[i], lane);                  \
+            }                                                                     \
+        }                                                                         \
+    }
 #define HUESTEP_WIDTH(W, attributes)       \
     HUESTEP_PASS(warmStart, W, attributes) \
     HUESTEP_PASS(solve, W, attributes)     \
     HUESTEP_PASS(relax, W, attributes)     \
     HUESTEP_PASS(restitute, W, attributes) \
-    constexpr ContactKernels kernels##W{warmStart##W, solve##W, relax##W, restitute##W};
+    HUESTEP_REFRESH(W, attributes)         \
+    constexpr ContactKernels kernels##W{refresh##W, warmStart##W, solve##W, relax##W, restitute##W};
 
 HUESTEP_WIDTH(1, )
 HUESTEP_WIDTH(4, )

@@ -7,19 +7,14 @@ namespace huestep {
 
 namespace {
 
+/// What padding is made of.
+const Contact nothing{};
+
 /// A point that is not there: no mass, no impulse, so every row of it does nothing.
 void clearPoint(ContactPointRows& p, std::uint32_t lane) {
     p.anchorAx[lane] = p.anchorAy[lane] = p.anchorBx[lane] = p.anchorBy[lane] = 0.0f;
-    p.separation[lane] = p.normalMass[lane] = p.tangentMass[lane] = 0.0f;
+    p.madeSeparation[lane] = p.normalMass[lane] = p.tangentMass[lane] = 0.0f;
     p.normalImpulse[lane] = p.tangentImpulse[lane] = 0.0f;
-    p.maxNormalImpulse[lane] = p.approach[lane] = 0.0f;
-}
-
-/// Padding: it reads the fixed world and writes to nowhere.
-void clearLane(ContactBlock& rows, std::uint32_t lane) {
-    clearPoint(rows.points[0], lane);
-    clearPoint(rows.points[1], lane);
-    rows.rollingMass[lane] = rows.rollingImpulse[lane] = 0.0f;
 }
 
 float inverseOf(float k) {
@@ -34,20 +29,22 @@ void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range p
         const std::uint32_t body = plan.bodyOfPlace[place];
         if (body == none) {
             m_bodies[place] = {};
+            m_poses[place] = {};
             m_sources[place] = {};
             continue;
         }
         const BodyMotion& motion = world.motions[body];
         const BodyInfo& info = world.bodies[body];
         SolverBody moving;
-        moving.vx = motion.velocity.x;
-        moving.vy = motion.velocity.y;
-        moving.w = motion.angularVelocity;
+        if (info.type() != BodyType::Static) {
+            moving.vx = motion.velocity.x;
+            moving.vy = motion.velocity.y;
+            moving.w = motion.angularVelocity;
+        }
         m_bodies[place] = moving;
+        m_poses[place] = {motion.position.x, motion.position.y, motion.rotation.c,
+                          motion.rotation.s};
         Source source;
-        source.pose = motion.pose();
-        source.velocity = motion.velocity;
-        source.angularVelocity = motion.angularVelocity;
         source.inverseMass = info.inverseMass;
         source.inverseInertia = info.inverseInertia;
         if (info.dynamic()) {
@@ -72,7 +69,6 @@ JointRow SoftStep::jointRow(const SolverWorld& world, std::uint32_t joint,
                             const ConstraintBodies& places) const {
     const float h = world.stepSeconds / static_cast<float>(world.substeps);
     const JointInfo& info = world.joints[joint];
-    // A static body has no solver place: its pose comes from the world.
     const ConstraintPlaces& bodies = world.jointBodies[joint];
     JointRow row = prepareJoint(info, world.jointImpulses[joint], joint,
                                 world.motions[bodies.a].pose(), world.motions[bodies.b].pose(), h);
@@ -105,54 +101,68 @@ void SoftStep::preparePoints(const Plan& plan, const SolverWorld& world, Range b
     }
 }
 
-void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
+void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world,
+                             const ContactKernels& kernels, Range blocks,
                              ContactFeatures& features) {
-    for (std::uint32_t block = blocks.begin; block < blocks.end; ++block) {
-        ContactBlock& rows = m_blocks[block];
+    const auto isKept = [&](std::uint32_t block) {
+        if (world.recycled.empty()) return false;
         for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
-            const std::uint32_t at = block * blockLanes + lane;
-            const std::uint32_t place = plan.contactOfLane[at];
-            rows.bodyA[lane] = plan.lanePlaces[at].a;
-            rows.bodyB[lane] = plan.lanePlaces[at].b;
-            if (place == none) {
-                clearLane(rows, lane);
-                continue;
-            }
-            const Contact& contact = world.contacts[place];
-            prepareLane(contact, plan.lanePlaces[at], world, rows, lane);
-            features.friction |= contact.friction > 0.0f;
-            features.restitution |= contact.restitution > 0.0f;
-            features.tangentSpeed |= contact.tangentSpeed != 0.0f;
-            features.rolling |= contact.rollingResistance > 0.0f;
+            const std::uint32_t contact = plan.contactOfLane[block * blockLanes + lane];
+            if (contact != none && !world.recycled[contact]) return false;
         }
+        return true;
+    };
+    for (std::uint32_t block = blocks.begin; block < blocks.end; ++block) {
+        if (!isKept(block)) makeBlock(plan, world, block);
+        features = features | m_blockFeatures[block];
     }
+    if (blocks.begin == blocks.end) return;
+    kernels.refresh(m_bodies.data(), m_poses.data(), &m_blocks[blocks.begin],
+                    blocks.end - blocks.begin);
 }
 
-void SoftStep::prepareLane(const Contact& contact, const ConstraintBodies& places,
-                           const SolverWorld& world, ContactBlock& rows, std::uint32_t lane) const {
+void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
+    ContactBlock& rows = m_blocks[block];
+    ContactFeatures features;
+    for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
+        const std::uint32_t at = block * blockLanes + lane;
+        const std::uint32_t place = plan.contactOfLane[at];
+        // Padding reads the world and writes to nowhere.
+        const Contact& contact = place == none ? nothing : world.contacts[place];
+        makeLane(contact, plan.lanePlaces[at], rows, lane);
+        features.friction |= contact.friction > 0.0f;
+        features.restitution |= contact.restitution > 0.0f;
+        features.tangentSpeed |= contact.tangentSpeed != 0.0f;
+        features.rolling |= contact.rollingResistance > 0.0f;
+    }
+    m_blockFeatures[block] = features;
+}
+
+void SoftStep::makeLane(const Contact& contact, const ConstraintBodies& places, ContactBlock& rows,
+                        std::uint32_t lane) const {
     const Source& a = m_sources[static_cast<std::size_t>(readPlace(places.a))];
     const Source& b = m_sources[static_cast<std::size_t>(readPlace(places.b))];
-    // All static bodies share the fixed world's place; where one is, only the world knows.
-    const Pose poseA = places.a == fixedWorld ? world.motions[contact.bodyA].pose() : a.pose;
-    const Pose poseB = places.b == fixedWorld ? world.motions[contact.bodyB].pose() : b.pose;
     const float mA = a.inverseMass, iA = a.inverseInertia;
     const float mB = b.inverseMass, iB = b.inverseInertia;
     const Vec2 n = contact.normal;
+    rows.bodyA[lane] = places.a;
+    rows.bodyB[lane] = places.b;
     rows.inverseMassA[lane] = mA;
     rows.inverseInertiaA[lane] = iA;
     rows.inverseMassB[lane] = mB;
     rows.inverseInertiaB[lane] = iB;
     rows.normalX[lane] = n.x;
     rows.normalY[lane] = n.y;
+    rows.cosineA[lane] = contact.rotationA.c;
+    rows.sineA[lane] = contact.rotationA.s;
+    rows.cosineB[lane] = contact.rotationB.c;
+    rows.sineB[lane] = contact.rotationB.s;
     rows.friction[lane] = contact.friction;
     rows.restitution[lane] = contact.restitution;
     rows.tangentSpeed[lane] = contact.tangentSpeed;
     rows.rollingResistance[lane] = contact.rollingResistance;
     rows.rollingMass[lane] = inverseOf(iA + iB);
     rows.rollingImpulse[lane] = contact.state.rollingImpulse;
-    const Vec2 centers = poseB.p - poseA.p;
-    const Rotation turnedA = relative(contact.rotationA, poseA.q);
-    const Rotation turnedB = relative(contact.rotationB, poseB.q);
     for (std::size_t i = 0; i < 2; ++i) {
         ContactPointRows& p = rows.points[i];
         if (i >= contact.pointCount) {
@@ -165,37 +175,34 @@ void SoftStep::prepareLane(const Contact& contact, const ConstraintBodies& place
         p.anchorAy[lane] = rA.y;
         p.anchorBx[lane] = rB.x;
         p.anchorBy[lane] = rB.y;
-        // How far the anchors have come apart since the manifold was made, when they met; the pass
-        // adds n·(rB − rA) and how they move from here on.
-        const Vec2 apart = centers + (rotate(turnedB, rB) - rotate(turnedA, rA));
-        p.separation[lane] = contact.separation[i] + dot(n, apart) - dot(n, rB - rA);
+        p.madeSeparation[lane] = contact.separation[i];
         const float rnA = cross(rA, n), rnB = cross(rB, n);
         const float rtA = dot(rA, n), rtB = dot(rB, n);  // r × t = −r·n for t = (ny, −nx)
         p.normalMass[lane] = inverseOf(mA + mB + iA * rnA * rnA + iB * rnB * rnB);
         p.tangentMass[lane] = inverseOf(mA + mB + iA * rtA * rtA + iB * rtB * rtB);
         p.normalImpulse[lane] = contact.state.normalImpulse[i];
         p.tangentImpulse[lane] = contact.state.tangentImpulse[i];
-        p.maxNormalImpulse[lane] = 0.0f;
-        const Vec2 approach = (b.velocity + crossScalar(b.angularVelocity, rB)) -
-                              (a.velocity + crossScalar(a.angularVelocity, rA));
-        p.approach[lane] = dot(approach, n);
     }
 }
 
 void SoftStep::storeBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
-                           std::vector<ContactHit>& hits) const {
+                           std::vector<ContactHit>& hits) {
     for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
         const std::uint32_t place = plan.contactOfLane[at];
         if (place == none) continue;
-        const ContactBlock& rows = m_blocks[at / blockLanes];
+        ContactBlock& rows = m_blocks[at / blockLanes];
         const std::uint32_t lane = at % blockLanes;
         Contact& contact = world.contacts[place];
-        contact.state.rollingImpulse = finiteOrZero(rows.rollingImpulse[lane]);
+        // Rows that stay go on from what the state holds, to the bit.
+        const auto settled = [lane](ContactBlock::Row& row) {
+            return row[lane] = finiteOrZero(row[lane]);
+        };
+        contact.state.rollingImpulse = settled(rows.rollingImpulse);
         ContactHit hit;
         for (std::size_t i = 0; i < contact.pointCount; ++i) {
-            const ContactPointRows& p = rows.points[i];
-            contact.state.normalImpulse[i] = finiteOrZero(p.normalImpulse[lane]);
-            contact.state.tangentImpulse[i] = finiteOrZero(p.tangentImpulse[lane]);
+            ContactPointRows& p = rows.points[i];
+            contact.state.normalImpulse[i] = settled(p.normalImpulse);
+            contact.state.tangentImpulse[i] = settled(p.tangentImpulse);
             const float approach = -p.approach[lane];
             if (!(p.maxNormalImpulse[lane] > 0.0f && approach > hitSpeed)) continue;
             if (!(approach > hit.approach)) continue;

@@ -38,11 +38,6 @@ struct Share {
     }
 };
 
-ContactFeatures operator|(ContactFeatures a, ContactFeatures b) {
-    return {a.friction || b.friction, a.rolling || b.rolling, a.tangentSpeed || b.tangentSpeed,
-            a.restitution || b.restitution};
-}
-
 }  // namespace
 
 /// Constants of all passes over one batch.
@@ -171,7 +166,7 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
     const std::uint32_t blocks = batch.endBlock - batch.firstBlock;
     auto features = perBlock<ContactFeatures>(blocks, blockGrain);
     over(batch.firstBlock, batch.endBlock, blockGrain, [&](Range range, std::uint32_t index) {
-        prepareBlocks(plan, world, range, features[index]);
+        prepareBlocks(plan, world, *pass.contacts, range, features[index]);
     });
     ContactFeatures all;
     for (const ContactFeatures& f : features) all = all | f;
@@ -201,10 +196,12 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
 void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Executor* executor,
                      std::vector<ContactHit>& hits, StageTimer& timer) {
     m_bodies.resize(plan.bodyOfPlace.size());
+    m_poses.resize(plan.bodyOfPlace.size());
     m_sources.resize(plan.bodyOfPlace.size());
     m_joints.resize(plan.jointOrder.size());
     m_points.resize(plan.pointOfLane.size() / blockLanes);
     m_blocks.resize(plan.contactOfLane.size() / blockLanes);
+    m_blockFeatures.resize(m_blocks.size());
     prepareBodies(plan, world, {0, 1});  // the fixed world
     const Pass pass = makePass(world, simd);
 
@@ -226,7 +223,8 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
             prepareBodies(plan, world, {batch.firstPlace, batch.endPlace});
             prepareJoints(plan, world, {batch.firstJoint, batch.endJoint});
             preparePoints(plan, world, {batch.firstPointBlock, batch.endPointBlock});
-            prepareBlocks(plan, world, {batch.firstBlock, batch.endBlock}, features);
+            prepareBlocks(plan, world, *pass.contacts, {batch.firstBlock, batch.endBlock},
+                          features);
             mine.use(features);
             substeps(plan, batch, mine, 0, 1, nullptr);
             storeBlocks(plan, world, {batch.firstBlock, batch.endBlock}, found[i]);

@@ -42,12 +42,16 @@ struct SolverWorld {
     std::span<const ConstraintPlaces> jointBodies;  ///< places of each joint's two bodies
     std::span<JointImpulses> jointImpulses;
     std::span<Contact> contacts;
+    /// By contact: not 0 where its manifold is that of the last solve, which had this very plan.
+    /// Empty: nowhere.
+    std::span<const std::uint8_t> recycled;
     Vec2 gravity;
     float stepSeconds = 0;
     std::uint32_t substeps = 4;
 };
 
-/// Solves a plan. Holds the rows of a step, kept from one to the next for their memory alone.
+/// Solves a plan. Holds the rows of a step: contact rows stay for the next one where plan and
+/// manifold do, all others for their memory alone.
 class SoftStep {
  public:
     /// Rows from contacts, joints and motions; all substeps; impulses back into contacts and
@@ -65,9 +69,6 @@ class SoftStep {
  private:
     /// What rows and passes need of a body beside its `SolverBody`, by solver place.
     struct Source {
-        Pose pose;
-        Vec2 velocity;
-        float angularVelocity = 0;
         float inverseMass = 0, inverseInertia = 0;
         Vec2 acceleration;                          // m/s²
         float angularAcceleration = 0;              // rad/s²
@@ -83,12 +84,13 @@ class SoftStep {
     // rows.cpp
     void prepareBodies(const Plan& plan, const SolverWorld& world, Range places);
     void prepareJoints(const Plan& plan, const SolverWorld& world, Range joints);
-    void prepareBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
-                       ContactFeatures& features);
-    void prepareLane(const Contact& contact, const ConstraintBodies& places,
-                     const SolverWorld& world, ContactBlock& rows, std::uint32_t lane) const;
+    void prepareBlocks(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
+                       Range blocks, ContactFeatures& features);
+    void makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block);
+    void makeLane(const Contact& contact, const ConstraintBodies& places, ContactBlock& rows,
+                  std::uint32_t lane) const;
     void storeBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
-                     std::vector<ContactHit>& hits) const;
+                     std::vector<ContactHit>& hits);
     void storeJoints(const SolverWorld& world, Range joints) const;
     [[nodiscard]] JointRow jointRow(const SolverWorld& world, std::uint32_t joint,
                                     const ConstraintBodies& places) const;
@@ -103,9 +105,11 @@ class SoftStep {
                   Executor* executor);
 
     std::vector<SolverBody> m_bodies;  // by solver place
+    std::vector<SolverPose> m_poses;   // by solver place
     std::vector<Source> m_sources;     // by solver place
     std::vector<ContactBlock> m_blocks;
-    std::vector<JointRow> m_joints;  // in solving order
+    std::vector<ContactFeatures> m_blockFeatures;  // by block
+    std::vector<JointRow> m_joints;                // in solving order
     std::vector<PointBlock> m_points;
 };
 

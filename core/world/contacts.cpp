@@ -43,6 +43,7 @@ Contact contactOf(const ShapePair& pair, const Shapes& known, std::span<const Sh
 void World::Data::layOutContacts() {
     Accelerators& acc = accelerators;
     const Shapes& shapes = acc.shapes;
+    acc.rowsHold = false;
     std::vector<Contact>& old = acc.lastContacts;
     acc.contacts.swap(old);
     if (!acc.contactsValid) {
@@ -87,6 +88,7 @@ void World::Data::layOutContacts() {
 void World::Data::collideAll(Executor* executor) {
     const NarrowPhaseInput in = narrowPhaseInput();
     const std::size_t count = accelerators.contacts.size();
+    accelerators.recycled.assign(count, 0);
     // What one block of contacts found: how many, which began or ended, and whether any sleeper is
     // touched by what is awake.
     struct Findings {
@@ -115,6 +117,7 @@ void World::Data::collideAll(Executor* executor) {
                 const bool touching = contact.pointCount > 0;
                 mine.pairs += update != ContactUpdate::Apart;
                 mine.recycled += update == ContactUpdate::Recycled;
+                accelerators.recycled[i] = update == ContactUpdate::Recycled;
                 if (touched != touching) mine.changed.push_back(i);
                 mine.disturbs |= touching && isActive(both) && isAsleep(both);
             }

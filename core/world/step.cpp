@@ -47,6 +47,9 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
                             accelerators.shapes.jointBodies,
                             state.jointImpulses,
                             accelerators.contacts,
+                            accelerators.rowsHold
+                                ? std::span<const std::uint8_t>(accelerators.recycled)
+                                : std::span<const std::uint8_t>(),
                             state.info().gravity,
                             state.info().stepSeconds,
                             state.info().substeps};
@@ -57,6 +60,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     std::vector<std::uint32_t> broken;
     solver.finish(plan, world, executor, broken);  // rows → motions
     for (const std::uint32_t body : broken) events.quarantined.push_back(state.bodies[body].id);
+    accelerators.rowsHold = true;
     timer.done(Stage::Finish);
 
     settleIslands();  // motions, islands → sleep
@@ -156,10 +160,9 @@ void World::Data::updatePlan() {
     Plan& plan = acc.plan;
     if (!acc.planValid || jointLinks != plan.jointLinks || links != plan.links ||
         awake != plan.awake) {
-        std::vector<std::uint8_t> kinematic(state.bodies.size(), 0);
-        for (const std::uint32_t body : acc.shapes.kinematic) kinematic[body] = 1;
-        makePlan(plan, std::move(links), jointLinks, std::move(awake), {moving, kinematic});
+        makePlan(plan, std::move(links), jointLinks, std::move(awake), moving);
         acc.planValid = true;
+        acc.rowsHold = false;
     }
     report.awakeBodies = static_cast<std::uint32_t>(plan.awake.size());
     report.joints = jointLinks;

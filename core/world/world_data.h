@@ -43,6 +43,8 @@ struct Accelerators {
     std::vector<std::uint32_t> lastActive;  // bodies that may have moved in the last step
     Plan plan;
     bool planValid = false;
+    std::vector<std::uint8_t> recycled;  // by contact: whether its manifold is the last step's
+    bool rowsHold = false;  // the solver's rows are those of this plan and these contacts
     SoftStep solver;
 };
 

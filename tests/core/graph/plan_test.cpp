@@ -13,7 +13,7 @@ namespace {
 
 /// Bodies of all kinds with links that could be a world's: at least one end moves.
 struct Case {
-    std::vector<std::uint8_t> moves, kinematic;
+    std::vector<std::uint8_t> moves;
     std::vector<Link> links;
     std::uint32_t jointLinks = 0;
     std::vector<std::uint32_t> awake;
@@ -23,9 +23,7 @@ Case randomCase(Random& random) {
     Case c;
     const std::uint32_t bodies = 2 + random.below(400);
     for (std::uint32_t i = 0; i < bodies; ++i) {
-        const bool kinematic = random.once(20);
-        c.kinematic.push_back(kinematic);
-        c.moves.push_back(!kinematic && !random.once(8));
+        c.moves.push_back(!random.once(6));
         if (c.moves.back()) c.awake.push_back(i);
     }
     // Near neighbours are linked, so that islands of all sizes come out.
@@ -48,7 +46,7 @@ Case randomCase(Random& random) {
 Plan planOf(const Case& c, std::uint32_t batchSize) {
     Plan plan;
     makePlan(plan, std::vector<Link>(c.links), c.jointLinks, std::vector<std::uint32_t>(c.awake),
-             {c.moves, c.kinematic}, batchSize);
+             c.moves, batchSize);
     return plan;
 }
 
@@ -59,10 +57,6 @@ void expectPlaces(const Case& c, const Plan& plan, const Batch& batch, const Lin
     for (const auto& [body, place] : ends) {
         ASSERT_EQ(place >= 0, c.moves[body] != 0) << "only what moves is written";
         const auto at = static_cast<std::uint32_t>(readPlace(place));
-        if (!c.moves[body] && !c.kinematic[body]) {
-            ASSERT_EQ(place, fixedWorld);
-            continue;
-        }
         ASSERT_EQ(plan.bodyOfPlace[at], body);
         ASSERT_GE(at, batch.firstPlace);
         ASSERT_LT(at, batch.endPlace) << "batches share no place";
@@ -166,7 +160,6 @@ TEST(Plan, OfNothingIsEmptyAndOfFreeBodiesHasNoBatch) {
     Case c;
     EXPECT_TRUE(planOf(c, 64).batches.empty());
     c.moves = {1, 0, 1};
-    c.kinematic = {0, 1, 0};
     c.awake = {0, 2};
     const Plan plan = planOf(c, 64);
     EXPECT_TRUE(plan.batches.empty());

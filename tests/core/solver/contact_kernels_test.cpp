@@ -146,6 +146,90 @@ TEST(ContactKernels, OfEveryWidthGiveTheBitsOfTheScalarOnes) {
     }
 }
 
+/// Where bodies are, and how they were turned when the manifolds of `rows` were made.
+std::vector<SolverPose> randomPoses(Random& random, Rows& rows) {
+    const auto turn = [&](float& c, float& s) {
+        const double angle = random.between(-3.1, 3.1);
+        c = static_cast<float>(std::cos(angle));
+        s = static_cast<float>(std::sin(angle));
+    };
+    std::vector<SolverPose> poses(rows.bodies.size());
+    for (SolverPose& pose : poses) {
+        pose.x = random.betweenF(-20.0, 20.0);
+        pose.y = random.betweenF(-20.0, 20.0);
+        turn(pose.c, pose.s);
+    }
+    for (ContactBlock& block : rows.blocks) {
+        for (std::size_t lane = 0; lane < blockLanes; ++lane) {
+            turn(block.cosineA[lane], block.sineA[lane]);
+            turn(block.cosineB[lane], block.sineB[lane]);
+            for (ContactPointRows& p : block.points) {
+                p.madeSeparation[lane] = random.betweenF(-0.05, 0.02);
+            }
+        }
+    }
+    return poses;
+}
+
+struct Point {
+    double x = 0, y = 0;
+};
+
+/// An anchor now: turned with its body from how it was when the manifold was made. In double.
+Point anchorNow(const SolverPose& pose, double cosine, double sine, double x, double y) {
+    const double by = std::atan2(double{pose.s}, double{pose.c}) - std::atan2(sine, cosine);
+    return {double{pose.x} + std::cos(by) * x - std::sin(by) * y,
+            double{pose.y} + std::sin(by) * x + std::cos(by) * y};
+}
+
+TEST(ContactKernels, RefreshFollowsTheBodiesFromWhereTheManifoldWasMadeAtEveryWidth) {
+    Random random(113);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 100 && !HasFatalFailure(); ++trial) {
+        Rows start = randomRows(random);
+        const std::vector<SolverPose> poses = randomPoses(random, start);
+        const auto count = static_cast<std::uint32_t>(start.blocks.size());
+        Rows scalar = start;
+        contactKernels(Simd::Scalar)
+            .refresh(scalar.bodies.data(), poses.data(), scalar.blocks.data(), count);
+        for (const Simd simd : availableSimd()) {
+            Rows wide = start;
+            contactKernels(simd).refresh(wide.bodies.data(), poses.data(), wide.blocks.data(),
+                                         count);
+            ASSERT_EQ(
+                std::memcmp(wide.blocks.data(), scalar.blocks.data(), count * sizeof(ContactBlock)),
+                0)
+                << nameOf(simd);
+        }
+        for (std::uint32_t i = 0; i < start.count; ++i) {
+            const ContactBlock& block = scalar.blocks[i / blockLanes];
+            const std::size_t lane = i % blockLanes;
+            const auto a = static_cast<std::size_t>(readPlace(block.bodyA[lane]));
+            const auto b = static_cast<std::size_t>(readPlace(block.bodyB[lane]));
+            const double nx = block.normalX[lane], ny = block.normalY[lane];
+            const SolverBody& u = scalar.bodies[a];
+            const SolverBody& v = scalar.bodies[b];
+            for (const ContactPointRows& p : block.points) {
+                const double ax = p.anchorAx[lane], ay = p.anchorAy[lane];
+                const double bx = p.anchorBx[lane], by = p.anchorBy[lane];
+                const Point onA =
+                    anchorNow(poses[a], block.cosineA[lane], block.sineA[lane], ax, ay);
+                const Point onB =
+                    anchorNow(poses[b], block.cosineB[lane], block.sineB[lane], bx, by);
+                const double apart = nx * (onB.x - onA.x) + ny * (onB.y - onA.y);
+                const double met = nx * (bx - ax) + ny * (by - ay);
+                ASSERT_NEAR(p.separation[lane], double{p.madeSeparation[lane]} + apart - met, 3e-5);
+                const double vx =
+                    (double{v.vx} - double{v.w} * by) - (double{u.vx} - double{u.w} * ay);
+                const double vy =
+                    (double{v.vy} + double{v.w} * bx) - (double{u.vy} + double{u.w} * ax);
+                ASSERT_NEAR(p.approach[lane], nx * vx + ny * vy, 3e-5);
+                ASSERT_EQ(p.maxNormalImpulse[lane], 0.0f);
+            }
+        }
+    }
+}
+
 TEST(ContactKernels, NeverWriteTheWorldNorKinematicBodiesNorPositions) {
     Random random(112);
     SCOPED_TRACE(random.trace());
