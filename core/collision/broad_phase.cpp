@@ -111,6 +111,7 @@ void markAlone(std::span<ShapeProxy> proxies) {
         bool manyBodies = false;
         bool alone = true;
     };
+    for (ShapeProxy& p : proxies) p.alone = false;
     std::vector<Kind> kinds;
     const auto kindOf = [&](const ShapeProxy& p) {
         return std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) {
@@ -332,15 +333,14 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
                         std::span<const ShapePair> forbidden, Executor* executor) {
     std::vector<ShapePair> fresh;
     if (m_fat.size() != tight.size()) {
-        m_movedCount = static_cast<std::uint32_t>(tight.size());
         rebuildAll(tight, travel, proxies);
+        m_movedCount = static_cast<std::uint32_t>(m_entries.size());
         joinAll(proxies, forbidden, executor, fresh);
         m_pairs.swap(fresh);
         return true;
     }
     std::vector<std::uint32_t> moved;
     for (const std::uint32_t shape : active) {
-        if (proxies[shape].alone) continue;
         if (!contains(m_fat[shape], tight[shape])) moved.push_back(shape);
     }
     m_movedCount = static_cast<std::uint32_t>(moved.size());
@@ -350,9 +350,9 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
         m_isMoved[shape] = 1;
     }
     moveEntries(moved);
-    // A query searches every level from its top, a step of the join moves a cursor: several times
-    // cheaper. Either way the same pairs come out.
-    if (moved.size() * 16 > tight.size()) {
+    // A query searches every level from its top, a step of the join moves a cursor: the join of all
+    // costs about as much as queries of a sixteenth. Either way the same pairs come out.
+    if (moved.size() * 16 > m_entries.size()) {
         joinAll(proxies, forbidden, executor, fresh);
     } else {
         joinMoved(moved, proxies, forbidden, fresh);

@@ -1,8 +1,8 @@
 /// The broad phase: which pairs of shapes are near enough to be looked at.
 ///
-/// An accelerator only. It keeps a fat box around every shape and the sorted list of pairs whose
-/// fat boxes overlap; whoever reads the list tests the tight bounds, so no result can depend on
-/// how fat the boxes are or when they were renewed.
+/// An accelerator only. It keeps a fat box around every shape that any other may touch, and the
+/// sorted list of pairs whose fat boxes overlap; whoever reads the list tests the tight bounds, so
+/// no result can depend on how fat the boxes are or when they were renewed.
 ///
 /// Method: a hierarchical grid without pointers. A fat box of extent e lives in the cell of its
 /// centre on the level of cell size 2^l ≥ e; boxes of one level overlap only if their cells are
@@ -45,9 +45,10 @@ class BroadPhase {
     void clear();
 
     /// Brings the pair list up to date. `tight`: bounds by shape; `travel`: how far each shape may
-    /// move in a few ticks (m), a hint; `active`: places of shapes that may have moved, others have
-    /// not; `forbidden`: sorted pairs of body places that a joint keeps from
-    /// touching. Returns whether `pairs()` changed.
+    /// move in a few ticks (m), a hint; `active`: places of shapes that may have moved, none of
+    /// them alone; others have not; `proxies`: the same from one `clear` to the next; `forbidden`:
+    /// sorted pairs of body places that a joint keeps from touching. Bounds and travel of a shape
+    /// alone are not read. Returns whether `pairs()` changed.
     bool update(std::span<const Bounds> tight, std::span<const Vec2> travel,
                 std::span<const std::uint32_t> active, std::span<const ShapeProxy> proxies,
                 std::span<const ShapePair> forbidden, Executor* executor);

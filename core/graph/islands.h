@@ -13,7 +13,7 @@ struct Link {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     std::uint32_t source = 0;
-    bool pointAlone = false;  ///< a joint that can be solved in lanes, see `PointBlock`
+    bool pin = false;  ///< a joint that can be solved in lanes, see `isPin`
     friend bool operator==(const Link&, const Link&) = default;
 };
 

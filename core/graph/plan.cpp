@@ -133,7 +133,7 @@ struct Lanes {
     }
     /// Adds whole blocks for `count` constraints; the rest of the last one is padding.
     void grow(std::uint32_t count) {
-        const std::uint32_t lanes = (count + blockLanes - 1) / blockLanes * blockLanes;
+        const std::uint32_t lanes = blocksOf(count) * blockLanes;
         sourceOf.resize(sourceOf.size() + lanes, none);
         places.resize(sourceOf.size());
     }
@@ -144,11 +144,11 @@ struct Lanes {
 /// stay together.
 void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> places,
                      std::span<const std::uint8_t> colours) {
-    enum Kind : std::uint8_t { Joint, Point, ContactLane };
+    enum Kind : std::uint8_t { Joint, Pin, ContactLane };
     const std::uint32_t begin = linkStart[batch];
     const auto kindOf = [&](std::uint32_t link, std::uint8_t colour) {
         if (link >= plan.jointLinks) return ContactLane;
-        return plan.links[link].pointAlone && !isSerial(colour) ? Point : Joint;
+        return plan.links[link].pin && !isSerial(colour) ? Pin : Joint;
     };
     std::array<std::array<std::uint32_t, 3>, colourCount> counts{};
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
@@ -157,35 +157,35 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
         ++counts[colours[i]][kindOf(link, colours[i])];
     }
     Lanes contacts{plan.contactOfLane, plan.lanePlaces};
-    Lanes points{plan.pointOfLane, plan.pointPlaces};
+    Lanes pins{plan.pinOfLane, plan.pinPlaces};
     Batch& b = plan.batches[batch];
     b.firstColour = static_cast<std::uint32_t>(plan.runs.size());
     b.firstBlock = contacts.blocks();
-    b.firstPointBlock = points.blocks();
+    b.firstPinBlock = pins.blocks();
     b.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     std::array<std::array<std::uint32_t, 3>, colourCount> next{};
     for (std::size_t c = 0; c < colourCount; ++c) {
         const auto& count = counts[c];
-        if (count[Joint] + count[Point] + count[ContactLane] == 0) continue;
+        if (count[Joint] + count[Pin] + count[ContactLane] == 0) continue;
         ColourRun run;
         run.colour = static_cast<std::uint8_t>(c);
         run.firstBlock = contacts.blocks();
         run.contactCount = count[ContactLane];
         run.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
         run.jointCount = count[Joint];
-        run.firstPointBlock = points.blocks();
-        run.pointCount = count[Point];
+        run.firstPinBlock = pins.blocks();
+        run.pinCount = count[Pin];
         plan.runs.push_back(run);
-        next[c] = {run.firstJoint, run.firstPointBlock * blockLanes, run.firstBlock * blockLanes};
+        next[c] = {run.firstJoint, run.firstPinBlock * blockLanes, run.firstBlock * blockLanes};
         contacts.grow(count[ContactLane]);
-        points.grow(count[Point]);
+        pins.grow(count[Pin]);
         plan.jointOrder.resize(plan.jointOrder.size() + count[Joint]);
         plan.jointPlaces.resize(plan.jointOrder.size());
         if (isSerial(run.colour)) plan.overflow += count[Joint] + count[ContactLane];
     }
     b.endColour = static_cast<std::uint32_t>(plan.runs.size());
     b.endBlock = contacts.blocks();
-    b.endPointBlock = points.blocks();
+    b.endPinBlock = pins.blocks();
     b.endJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
@@ -197,7 +197,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
             plan.jointOrder[at] = source;
             plan.jointPlaces[at] = places[i];
         } else {
-            const Lanes& lanes = kind == Point ? points : contacts;
+            const Lanes& lanes = kind == Pin ? pins : contacts;
             lanes.sourceOf[at] = source;
             lanes.places[at] = places[i];
         }
@@ -221,8 +221,8 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.lanePlaces.clear();
     plan.jointOrder.clear();
     plan.jointPlaces.clear();
-    plan.pointOfLane.clear();
-    plan.pointPlaces.clear();
+    plan.pinOfLane.clear();
+    plan.pinPlaces.clear();
     plan.colourOfLink.assign(plan.links.size(), 0);
     plan.colours = plan.overflow = 0;
 

@@ -8,8 +8,6 @@ namespace huestep {
 
 namespace {
 
-const Softness relaxed{};  // no bias, full mass, nothing kept back
-
 JointBodies load(const SolverBody* bodies, const JointRow& row) {
     const SolverBody& a = bodies[readPlace(row.bodyA)];
     const SolverBody& b = bodies[readPlace(row.bodyB)];
@@ -149,15 +147,13 @@ void warmStartJoint(SolverBody* bodies, const JointRow& row) {
 }
 
 void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass) {
-    JointPass now = pass;
-    if (!pass.bias) now.soft = relaxed;
     switch (row.kind) {
         case JointKind::Revolute:
-            return solveRevolute(bodies, row, now);
+            return solveRevolute(bodies, row, pass);
         case JointKind::Distance:
-            return solveDistance(bodies, row, now);
+            return solveDistance(bodies, row, pass);
         case JointKind::Mouse:
-            return solveMouse(bodies, row, now);
+            return solveMouse(bodies, row, pass);
     }
 }
 

@@ -29,8 +29,7 @@ struct JointRow {
 struct JointPass {
     float h = 0;
     float inverseH = 0;
-    Softness soft;      ///< of rigid parts; neutral in relax
-    bool bias = false;  ///< whether position errors are pushed back
+    Softness soft;  ///< of rigid parts; as it begins, neutral: that is relax
 };
 
 /// `poseA`, `poseB`: at the start of the step; the fixed world's pose is the identity.

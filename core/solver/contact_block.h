@@ -33,6 +33,10 @@ constexpr BodyPlace readPlace(BodyPlace p) {
 }
 
 inline constexpr int blockLanes = 16;
+/// How many blocks `lanes` constraints fill.
+constexpr std::uint32_t blocksOf(std::uint32_t lanes) {
+    return (lanes + blockLanes - 1) / blockLanes;
+}
 
 struct alignas(64) ContactPointRows {
     using Row = float[blockLanes];

@@ -258,16 +258,6 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
     pair.store(bodies, block, lane);
 }
 
-// An entry a pass and width. Unused lanes of the last W are padding: no mass, no body. `flatten`
-// and `target` make the always-inlined code above wide.
-#define HUESTEP_PASS(name, W, attributes)                                                  \
-    attributes void name##W(SolverBody* bodies, ContactBlock* blocks, std::uint32_t count, \
-                            const ContactPass& pass) {                                     \
-        for (std::uint32_t first = 0; first < count; first += W) {                         \
-            name##Lanes<W>(bodies, blocks[first / blockLanes],                             \
-                           static_cast<int>(first % blockLanes), pass);                    \
-        }                                                                                  \
-    }
 #define HUESTEP_REFRESH(W, attributes)                                            \
     attributes void refresh##W(const SolverBody* bodies, const SolverPose* poses, \
                                ContactBlock* blocks, std::uint32_t count) {       \
@@ -277,39 +267,23 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
             }                                                                     \
         }                                                                         \
     }
-#define HUESTEP_WIDTH(W, attributes)       \
-    HUESTEP_PASS(warmStart, W, attributes) \
-    HUESTEP_PASS(solve, W, attributes)     \
-    HUESTEP_PASS(relax, W, attributes)     \
-    HUESTEP_PASS(restitute, W, attributes) \
-    HUESTEP_REFRESH(W, attributes)         \
-    constexpr ContactKernels kernels##W{refresh##W, warmStart##W, solve##W, relax##W, restitute##W};
+#define HUESTEP_KERNELS(W, attributes)                                \
+    HUESTEP_REFRESH(W, attributes)                                    \
+    HUESTEP_PASS(warmStart, ContactBlock, ContactPass, W, attributes) \
+    HUESTEP_PASS(solve, ContactBlock, ContactPass, W, attributes)     \
+    HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)     \
+    HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
+#define HUESTEP_ENTRY(W, attributes) \
+    ContactKernels{refresh##W, warmStart##W, solve##W, relax##W, restitute##W},
 
-HUESTEP_WIDTH(1, )
-HUESTEP_WIDTH(4, )
-#if defined(__x86_64__)
-HUESTEP_WIDTH(8, __attribute__((target("avx2"), flatten, noinline)))
-HUESTEP_WIDTH(16, __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"), flatten, noinline)))
-#endif
+HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
+
+constexpr ContactKernels byWidth[] = {HUESTEP_EACH_WIDTH(HUESTEP_ENTRY)};
 
 }  // namespace
 
 const ContactKernels& contactKernels(Simd simd) {
-    switch (simd) {
-        case Simd::Scalar:
-            return kernels1;
-        case Simd::Sse2:
-        case Simd::Neon:
-            return kernels4;
-#if defined(__x86_64__)
-        case Simd::Avx2:
-            return kernels8;
-        case Simd::Avx512:
-            return kernels16;
-#endif
-        default:
-            return contactKernels(availableSimd().back());
-    }
+    return byWidth[widthIndex(simd)];
 }
 
 }  // namespace huestep

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/solver/contact_block.h"
-#include "core/world/world.h"
+#include "core/solver/simd.h"
 
 namespace huestep {
 

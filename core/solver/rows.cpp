@@ -89,14 +89,14 @@ void SoftStep::prepareJoints(const Plan& plan, const SolverWorld& world, Range j
     }
 }
 
-void SoftStep::preparePoints(const Plan& plan, const SolverWorld& world, Range blocks) {
+void SoftStep::preparePins(const Plan& plan, const SolverWorld& world, Range blocks) {
     for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
-        PointBlock& block = m_points[at / blockLanes];
-        const std::uint32_t joint = plan.pointOfLane[at];
+        PinBlock& block = m_pins[at / blockLanes];
+        const std::uint32_t joint = plan.pinOfLane[at];
         if (joint == none) {
-            clearPointLane(block, at % blockLanes);
+            clearPinLane(block, at % blockLanes);
         } else {
-            setPointLane(block, at % blockLanes, jointRow(world, joint, plan.pointPlaces[at]));
+            setPinLane(block, at % blockLanes, jointRow(world, joint, plan.pinPlaces[at]));
         }
     }
 }
@@ -222,11 +222,11 @@ void SoftStep::storeJoints(const SolverWorld& world, Range joints) const {
     }
 }
 
-void SoftStep::storePoints(const Plan& plan, const SolverWorld& world, Range blocks) const {
+void SoftStep::storePins(const Plan& plan, const SolverWorld& world, Range blocks) const {
     for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
-        const std::uint32_t joint = plan.pointOfLane[at];
+        const std::uint32_t joint = plan.pinOfLane[at];
         if (joint == none) continue;
-        const PointBlock& block = m_points[at / blockLanes];
+        const PinBlock& block = m_pins[at / blockLanes];
         world.jointImpulses[joint].point = {finiteOrZero(block.impulseX[at % blockLanes]),
                                             finiteOrZero(block.impulseY[at % blockLanes])};
     }

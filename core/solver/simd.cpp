@@ -1,7 +1,6 @@
-#include <array>
-#include <string_view>
+#include "core/solver/simd.h"
 
-#include "core/world/world.h"
+#include <array>
 
 namespace huestep {
 
@@ -33,6 +32,23 @@ std::vector<Simd> availableSimd() {
     found.push_back(Simd::Neon);
 #endif
     return found;
+}
+
+std::size_t widthIndex(Simd simd) {
+    switch (simd) {
+        case Simd::Auto:
+            return widthIndex(availableSimd().back());
+        case Simd::Scalar:
+            return 0;
+        case Simd::Sse2:
+        case Simd::Neon:
+            return 1;
+        case Simd::Avx2:
+            return 2;
+        case Simd::Avx512:
+            return 3;
+    }
+    return 0;
 }
 
 std::string_view nameOf(Simd simd) {

@@ -22,11 +22,6 @@ constexpr float pushSpeed = 3.0f;  // m/s
 constexpr std::uint32_t bodyGrain = 256;
 constexpr std::uint32_t blockGrain = 16;
 constexpr std::uint32_t jointGrain = 128;
-
-std::uint32_t blocksOf(std::uint32_t lanes) {
-    return (lanes + blockLanes - 1) / blockLanes;
-}
-
 /// Worker's share of [0, count): contiguous, sizes differing by at most one.
 struct Share {
     std::uint32_t begin, end;
@@ -43,7 +38,7 @@ struct Share {
 /// Constants of all passes over one batch.
 struct SoftStep::Pass {
     const ContactKernels* contacts;
-    const PointKernels* points;
+    const PinKernels* pins;
     float h;
     std::uint32_t substeps;
     ContactPass moving;  // between two bodies that move
@@ -56,7 +51,7 @@ struct SoftStep::Pass {
 SoftStep::Pass SoftStep::makePass(const SolverWorld& world, Simd simd) {
     Pass pass{};
     pass.contacts = &contactKernels(simd);
-    pass.points = &pointKernels(simd);
+    pass.pins = &pinKernels(simd);
     pass.h = world.stepSeconds / static_cast<float>(world.substeps);
     pass.substeps = world.substeps;
     const float rate = 1.0f / pass.h;
@@ -68,9 +63,52 @@ SoftStep::Pass SoftStep::makePass(const SolverWorld& world, Simd simd) {
     pass.relaxed.h = pass.h;
     pass.relaxed.inverseH = rate;
     pass.biased = pass.relaxed;
-    pass.biased.bias = true;
     pass.biased.soft = softness(jointFrequency * rate, jointDamping, pass.h);
     return pass;
+}
+
+/// What one pass over all colours does with each kind of constraint; null: nothing.
+struct SoftStep::Sweep {
+    void (*joint)(SolverBody* bodies, JointRow& row, const JointPass& pass);
+    PinKernel PinKernels::*pin;
+    ContactKernel ContactKernels::*contact;
+};
+const SoftStep::Sweep SoftStep::warmStartSweep{
+    [](SolverBody* bodies, JointRow& row, const JointPass&) { warmStartJoint(bodies, row); },
+    &PinKernels::warmStart, &ContactKernels::warmStart};
+const SoftStep::Sweep SoftStep::solveSweep{solveJoint, &PinKernels::solve, &ContactKernels::solve};
+const SoftStep::Sweep SoftStep::relaxSweep{solveJoint, &PinKernels::solve, &ContactKernels::relax};
+const SoftStep::Sweep SoftStep::restituteSweep{nullptr, nullptr, &ContactKernels::restitute};
+
+/// This worker's share of one colour.
+void SoftStep::sweepColour(const ColourRun& run, const Sweep& sweep, const JointPass& joint,
+                           const Pass& pass, int worker, int workers) {
+    // Constraints of the overflow share bodies: one worker, one by one, in key order.
+    const bool serial = isSerial(run.colour);
+    if (serial && worker != 0) return;
+    const auto shareOf = [&](std::uint32_t count) {
+        return serial ? Share(count, 0, 1) : Share(count, worker, workers);
+    };
+    SolverBody* bodies = m_bodies.data();
+    const Share joints = shareOf(sweep.joint != nullptr ? run.jointCount : 0);
+    for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
+        sweep.joint(bodies, m_joints[run.firstJoint + i], joint);
+    }
+    // Whole blocks are shared out; padding of the last one is left out.
+    const auto overBlocks = [&](std::uint32_t count, auto&& f) {
+        const Share blocks = shareOf(blocksOf(count));
+        if (blocks.begin == blocks.end) return;
+        const std::uint32_t last = std::min(blocks.end * blockLanes, count);
+        f(blocks.begin, last - blocks.begin * blockLanes);
+    };
+    overBlocks(sweep.pin != nullptr ? run.pinCount : 0, [&](std::uint32_t first, std::uint32_t n) {
+        (pass.pins->*sweep.pin)(bodies, m_pins.data() + run.firstPinBlock + first, n, joint);
+    });
+    const ContactKernels& contacts = serial ? contactKernels(Simd::Scalar) : *pass.contacts;
+    overBlocks(run.contactCount, [&](std::uint32_t first, std::uint32_t n) {
+        (contacts.*sweep.contact)(bodies, m_blocks.data() + run.firstBlock + first, n,
+                                  run.colour >= firstFixedColour ? pass.fixed : pass.moving);
+    });
 }
 
 /// The substeps of one batch. With several workers every stage is shared out and ends in a barrier;
@@ -87,42 +125,12 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
         }
         barrier();
     };
-    const auto overColours = [&](auto&& onJoint, PointKernel pointKernel, const JointPass& joint,
-                                 ContactKernel ContactKernels::*kernel) {
+    const auto overColours = [&](const Sweep& sweep, const JointPass& joint) {
         for (std::uint32_t c = batch.firstColour; c < batch.endColour; ++c) {
-            const ColourRun& run = plan.runs[c];
-            // Constraints of the overflow share bodies: one worker, one by one, in key order.
-            const bool serial = isSerial(run.colour);
-            const ContactKernels& kernels = serial ? contactKernels(Simd::Scalar) : *pass.contacts;
-            if (!serial || worker == 0) {
-                const auto shareOf = [&](std::uint32_t count) {
-                    return Share(count, serial ? 0 : worker, serial ? 1 : workers);
-                };
-                const Share joints = shareOf(run.jointCount);
-                for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
-                    onJoint(m_joints[run.firstJoint + i]);
-                }
-                const Share points = shareOf(blocksOf(run.pointCount));
-                if (pointKernel != nullptr && points.begin < points.end) {
-                    const std::uint32_t first = points.begin * blockLanes;
-                    const std::uint32_t last = std::min(points.end * blockLanes, run.pointCount);
-                    pointKernel(m_bodies.data(),
-                                m_points.data() + run.firstPointBlock + points.begin, last - first,
-                                joint);
-                }
-                const Share share = shareOf(blocksOf(run.contactCount));
-                if (share.begin < share.end) {
-                    const std::uint32_t first = share.begin * blockLanes;
-                    const std::uint32_t last = std::min(share.end * blockLanes, run.contactCount);
-                    (kernels.*kernel)(m_bodies.data(),
-                                      m_blocks.data() + run.firstBlock + share.begin, last - first,
-                                      run.colour >= firstFixedColour ? pass.fixed : pass.moving);
-                }
-            }
+            sweepColour(plan.runs[c], sweep, joint, pass, worker, workers);
             barrier();
         }
     };
-    SolverBody* bodies = m_bodies.data();
     const float h = pass.h;
     for (std::uint32_t substep = 0; substep < pass.substeps; ++substep) {
         overBodies([h](SolverBody& b, const Source& s) {
@@ -130,10 +138,8 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
             b.vy = (b.vy + h * s.acceleration.y) * s.linearFactor;
             b.w = (b.w + h * s.angularAcceleration) * s.angularFactor;
         });
-        overColours([&](const JointRow& row) { warmStartJoint(bodies, row); },
-                    pass.points->warmStart, pass.biased, &ContactKernels::warmStart);
-        overColours([&](JointRow& row) { solveJoint(bodies, row, pass.biased); },
-                    pass.points->solve, pass.biased, &ContactKernels::solve);
+        overColours(warmStartSweep, pass.biased);
+        overColours(solveSweep, pass.biased);
         overBodies([h](SolverBody& b, const Source& s) {
             b.dx += h * (b.vx - s.lag.x);
             b.dy += h * (b.vy - s.lag.y);
@@ -141,11 +147,10 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
             b.dc = q.c;
             b.ds = q.s;
         });
-        overColours([&](JointRow& row) { solveJoint(bodies, row, pass.relaxed); },
-                    pass.points->solve, pass.relaxed, &ContactKernels::relax);
+        overColours(relaxSweep, pass.relaxed);
     }
     if (pass.moving.features.restitution) {
-        overColours([](const JointRow&) {}, nullptr, pass.relaxed, &ContactKernels::restitute);
+        overColours(restituteSweep, pass.relaxed);
     }
 }
 
@@ -161,8 +166,8 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
          [&](Range range, std::uint32_t) { prepareBodies(plan, world, range); });
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { prepareJoints(plan, world, range); });
-    over(batch.firstPointBlock, batch.endPointBlock, blockGrain,
-         [&](Range range, std::uint32_t) { preparePoints(plan, world, range); });
+    over(batch.firstPinBlock, batch.endPinBlock, blockGrain,
+         [&](Range range, std::uint32_t) { preparePins(plan, world, range); });
     const std::uint32_t blocks = batch.endBlock - batch.firstBlock;
     auto features = perBlock<ContactFeatures>(blocks, blockGrain);
     over(batch.firstBlock, batch.endBlock, blockGrain, [&](Range range, std::uint32_t index) {
@@ -188,8 +193,8 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { storeJoints(world, range); });
-    over(batch.firstPointBlock, batch.endPointBlock, blockGrain,
-         [&](Range range, std::uint32_t) { storePoints(plan, world, range); });
+    over(batch.firstPinBlock, batch.endPinBlock, blockGrain,
+         [&](Range range, std::uint32_t) { storePins(plan, world, range); });
     timer.done(Stage::Store);
 }
 
@@ -199,7 +204,7 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
     m_poses.resize(plan.bodyOfPlace.size());
     m_sources.resize(plan.bodyOfPlace.size());
     m_joints.resize(plan.jointOrder.size());
-    m_points.resize(plan.pointOfLane.size() / blockLanes);
+    m_pins.resize(plan.pinOfLane.size() / blockLanes);
     m_blocks.resize(plan.contactOfLane.size() / blockLanes);
     m_blockFeatures.resize(m_blocks.size());
     prepareBodies(plan, world, {0, 1});  // the fixed world
@@ -222,14 +227,14 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
             ContactFeatures features;
             prepareBodies(plan, world, {batch.firstPlace, batch.endPlace});
             prepareJoints(plan, world, {batch.firstJoint, batch.endJoint});
-            preparePoints(plan, world, {batch.firstPointBlock, batch.endPointBlock});
+            preparePins(plan, world, {batch.firstPinBlock, batch.endPinBlock});
             prepareBlocks(plan, world, *pass.contacts, {batch.firstBlock, batch.endBlock},
                           features);
             mine.use(features);
             substeps(plan, batch, mine, 0, 1, nullptr);
             storeBlocks(plan, world, {batch.firstBlock, batch.endBlock}, found[i]);
             storeJoints(world, {batch.firstJoint, batch.endJoint});
-            storePoints(plan, world, {batch.firstPointBlock, batch.endPointBlock});
+            storePins(plan, world, {batch.firstPinBlock, batch.endPinBlock});
         }
     });
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());

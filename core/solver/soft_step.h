@@ -12,7 +12,7 @@
 #include "core/contact/contact.h"
 #include "core/graph/plan.h"
 #include "core/joint/joint_row.h"
-#include "core/joint/point_block.h"
+#include "core/joint/pin_block.h"
 #include "core/parallel/executor.h"
 #include "core/solver/contact_block.h"
 #include "core/world/event.h"
@@ -80,6 +80,8 @@ class SoftStep {
         std::uint32_t end = 0;
     };
     struct Pass;
+    struct Sweep;
+    static const Sweep warmStartSweep, solveSweep, relaxSweep, restituteSweep;
 
     // rows.cpp
     void prepareBodies(const Plan& plan, const SolverWorld& world, Range places);
@@ -94,13 +96,15 @@ class SoftStep {
     void storeJoints(const SolverWorld& world, Range joints) const;
     [[nodiscard]] JointRow jointRow(const SolverWorld& world, std::uint32_t joint,
                                     const ConstraintBodies& places) const;
-    void preparePoints(const Plan& plan, const SolverWorld& world, Range blocks);
-    void storePoints(const Plan& plan, const SolverWorld& world, Range blocks) const;
+    void preparePins(const Plan& plan, const SolverWorld& world, Range blocks);
+    void storePins(const Plan& plan, const SolverWorld& world, Range blocks) const;
 
     // soft_step.cpp
     static Pass makePass(const SolverWorld& world, Simd simd);
     void solveGiant(const Plan& plan, const SolverWorld& world, const Batch& batch, Pass pass,
                     Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer);
+    void sweepColour(const ColourRun& run, const Sweep& sweep, const JointPass& joint,
+                     const Pass& pass, int worker, int workers);
     void substeps(const Plan& plan, const Batch& batch, const Pass& pass, int worker, int workers,
                   Executor* executor);
 
@@ -110,7 +114,7 @@ class SoftStep {
     std::vector<ContactBlock> m_blocks;
     std::vector<ContactFeatures> m_blockFeatures;  // by block
     std::vector<JointRow> m_joints;                // in solving order
-    std::vector<PointBlock> m_points;
+    std::vector<PinBlock> m_pins;
 };
 
 }  // namespace huestep

@@ -2,9 +2,11 @@
 
 #include "core/state/validate.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 #include "core/collision/hull.h"
 #include "core/math/finite.h"
@@ -129,6 +131,17 @@ std::string badContact(const ContactState& c) {
     return {};
 }
 
+/// Whether anything lets two shapes touch: filters, types, and joints between their bodies.
+bool mayPair(const WorldState& s, const ShapeInfo& a, const ShapeInfo& b,
+             const std::vector<std::pair<BodyId, BodyId>>& forbidden) {
+    if (a.body == b.body || !mayTouch(a.filter(), b.filter())) return false;
+    if (!findById(s.bodies, a.body)->dynamic() && !findById(s.bodies, b.body)->dynamic()) {
+        return false;
+    }
+    const std::pair<BodyId, BodyId> bodies = std::minmax(a.body, b.body);
+    return !std::binary_search(forbidden.begin(), forbidden.end(), bodies);
+}
+
 std::string badReferences(const WorldState& s) {
     BodyId last = 0;
     for (std::size_t i = 0; i < s.shapes.size(); ++i) {
@@ -146,6 +159,13 @@ std::string badReferences(const WorldState& s) {
         }
         if (!placeById(s.bodies, j.bodyB)) return nth("joint", i) + " bodyB: no such body";
     }
+    std::vector<std::pair<BodyId, BodyId>> forbidden;
+    for (const JointInfo& j : s.joints) {
+        if (!j.has(JointInfo::collideConnected)) {
+            forbidden.push_back(std::minmax(j.bodyA, j.bodyB));
+        }
+    }
+    std::sort(forbidden.begin(), forbidden.end());
     ShapeId lastA = 0, lastB = 0;
     for (std::size_t i = 0; i < s.contacts.size(); ++i) {
         const ContactState& c = s.contacts[i];
@@ -157,8 +177,8 @@ std::string badReferences(const WorldState& s) {
         const auto a = placeById(s.shapes, c.shapeA);
         const auto b = placeById(s.shapes, c.shapeB);
         if (c.shapeA >= c.shapeB || !a || !b) return nth("contact", i) + " shapeB: no such pair";
-        if (s.shapes[*a].body == s.shapes[*b].body) {
-            return nth("contact", i) + " shapeB: of the same body";
+        if (!mayPair(s, s.shapes[*a], s.shapes[*b], forbidden)) {
+            return nth("contact", i) + " shapeB: these two may not touch";
         }
         if (std::string bad = badContact(c); !bad.empty()) return nth("contact", i) + " " + bad;
     }

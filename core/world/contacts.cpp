@@ -1,6 +1,7 @@
 // The contacts of a step: which there are, and what the narrow phase says of each.
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/parallel/over_range.h"
 #include "core/world/world_data.h"
@@ -44,10 +45,11 @@ void World::Data::layOutContacts() {
     Accelerators& acc = accelerators;
     const Shapes& shapes = acc.shapes;
     acc.rowsHold = false;
-    std::vector<Contact>& old = acc.lastContacts;
+    std::vector<Contact>& old = acc.contactScratch;
     acc.contacts.swap(old);
     if (!acc.contactsValid) {
         // After a restore or a change of definitions the contacts are in the state alone.
+        assert(old.empty());
         for (const ContactState& c : state.contacts) {
             // Both shapes are there: whoever removes one removes its contacts.
             const ShapePair pair{*placeById(state.shapes, c.shapeA),

@@ -141,7 +141,7 @@ void World::Data::updatePlan() {
     for (std::uint32_t i = 0; i < acc.shapes.jointBodies.size(); ++i) {
         const ConstraintPlaces& j = acc.shapes.jointBodies[i];
         if (!moves(j.a) && !moves(j.b)) continue;
-        links.push_back({j.a, j.b, i, isPointAlone(state.joints[i], state.jointImpulses[i])});
+        links.push_back({j.a, j.b, i, isPin(state.joints[i], state.jointImpulses[i])});
     }
     const auto jointLinks = static_cast<std::uint32_t>(links.size());
     for (std::uint32_t i = 0; i < acc.contacts.size(); ++i) {

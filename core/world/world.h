@@ -17,20 +17,12 @@
 #include "core/parallel/executor.h"
 #include "core/result.h"
 #include "core/scene/scene.h"
+#include "core/solver/simd.h"
 #include "core/state/records.h"
 #include "core/world/command.h"
 #include "core/world/event.h"
 
 namespace huestep {
-
-/// Lanes of the solver's arithmetic. The result is the same for all.
-enum class Simd : std::uint8_t { Auto, Scalar, Sse2, Avx2, Avx512, Neon };
-
-/// The widths this machine can run, narrowest first; always has Scalar.
-std::vector<Simd> availableSimd();
-std::string_view nameOf(Simd simd);
-/// From `auto`, `scalar`, `sse2`, `avx2`, `avx512`, `neon`.
-std::optional<Simd> simdFromName(std::string_view name);
 
 /// With what a step is computed. No part of it can reach the result.
 struct StepResources {

@@ -38,7 +38,7 @@ struct Accelerators {
     std::vector<Vec2> travel;   // by shape
     BroadPhase broadPhase;
     std::vector<Contact> contacts;          // candidate pairs, by key; holds the contacts' state
-    std::vector<Contact> lastContacts;      // their memory, taken in turns
+    std::vector<Contact> contactScratch;    // of layOutContacts; means nothing outside
     bool contactsValid = false;             // else they are to be read from `state.contacts`
     std::vector<std::uint32_t> lastActive;  // bodies that may have moved in the last step
     Plan plan;

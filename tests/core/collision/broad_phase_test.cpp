@@ -25,7 +25,11 @@ struct Scatter {
 
     bool update(BroadPhase& phase, std::span<const std::uint32_t> active,
                 Executor* executor = nullptr) const {
-        return phase.update(tight, travel, active, proxies, forbidden, executor);
+        std::vector<std::uint32_t> watched;
+        for (const std::uint32_t i : active) {
+            if (!proxies[i].alone) watched.push_back(i);
+        }
+        return phase.update(tight, travel, watched, proxies, forbidden, executor);
     }
 
     [[nodiscard]] bool may(std::uint32_t a, std::uint32_t b) const {
@@ -34,7 +38,7 @@ struct Scatter {
         if (p.body == q.body || (!p.dynamic && !q.dynamic)) return false;
         if (!mayTouch(p.filter, q.filter)) return false;
         const ShapePair bodies{std::min(p.body, q.body), std::max(p.body, q.body)};
-        return std::find(forbidden.begin(), forbidden.end(), bodies) == forbidden.end();
+        return !std::binary_search(forbidden.begin(), forbidden.end(), bodies);
     }
 
     /// The pairs whose tight bounds overlap, by trying all.
@@ -169,6 +173,7 @@ TEST(BroadPhase, FindsTheSamePairsOnAnyNumberOfThreads) {
     const Scatter field = randomField(random, 5'000, 60.0, false);
     BroadPhase alone;
     field.update(alone, field.all);
+    field.expectComplete(alone);
     for (const int threads : {1, 2, 5}) {
         Executor executor(threads, 7);
         BroadPhase phase;
@@ -190,6 +195,25 @@ TEST(BroadPhase, FindsOverlapsFarFromTheOriginAndAtTheRimOfTheWorld) {
         BroadPhase phase;
         field.update(phase, field.all);
         field.expectComplete(phase);
+    }
+}
+
+TEST(BroadPhase, FindsEveryPairOfAsManyShapesOnOneSpotAsThereMayBe) {
+    for (const std::size_t shapes : {64u, 65u, 66u, 129u, 130u, 200u}) {
+        // All of one size, and fine ones under as many coarse ones.
+        for (const bool twoSizes : {false, true}) {
+            Scatter field(shapes * (twoSizes ? 2 : 1));
+            for (std::uint32_t i = 0; i < field.all.size(); ++i) {
+                const float half = i < shapes ? 0.3f : 5.0f;
+                field.tight[i] = boxAround({0.1f, 0.1f}, half, half);
+                field.proxies[i].body = i;
+                field.proxies[i].dynamic = i % 3 != 0;
+            }
+            BroadPhase phase;
+            field.update(phase, field.all);
+            field.expectComplete(phase);
+            if (testing::Test::HasFatalFailure()) return;
+        }
     }
 }
 

@@ -38,7 +38,7 @@ Case randomCase(Random& random) {
     c.jointLinks = c.links.empty() ? 0 : random.below(c.links.size());
     for (std::uint32_t i = 0; i < c.links.size(); ++i) {
         c.links[i].source = i < c.jointLinks ? i : i - c.jointLinks;
-        c.links[i].pointAlone = i < c.jointLinks && !random.once(3);
+        c.links[i].pin = i < c.jointLinks && !random.once(3);
     }
     return c;
 }
@@ -78,7 +78,7 @@ void expectSound(const Case& c, const Plan& plan) {
             const ColourRun& run = plan.runs[r];
             ASSERT_GT(static_cast<int>(run.colour), lastColour) << "in solving order";
             lastColour = run.colour;
-            inBatch += run.contactCount + run.pointCount + run.jointCount;
+            inBatch += run.contactCount + run.pinCount + run.jointCount;
             std::set<BodyPlace> written;
             std::uint32_t lastLink = 0;
             const auto visit = [&](std::uint32_t linkIndex, const ConstraintBodies& places) {
@@ -101,17 +101,17 @@ void expectSound(const Case& c, const Plan& plan) {
                 visit(joint, plan.jointPlaces[run.firstJoint + i]);
             }
             lastLink = 0;
-            const std::uint32_t pointLanes =
-                (run.pointCount + blockLanes - 1) / blockLanes * blockLanes;
-            for (std::uint32_t i = 0; i < pointLanes; ++i) {
-                const std::uint32_t at = run.firstPointBlock * blockLanes + i;
-                const std::uint32_t joint = plan.pointOfLane[at];
-                ASSERT_EQ(joint == none, i >= run.pointCount) << "padding comes last";
+            const std::uint32_t pinLanes =
+                (run.pinCount + blockLanes - 1) / blockLanes * blockLanes;
+            for (std::uint32_t i = 0; i < pinLanes; ++i) {
+                const std::uint32_t at = run.firstPinBlock * blockLanes + i;
+                const std::uint32_t joint = plan.pinOfLane[at];
+                ASSERT_EQ(joint == none, i >= run.pinCount) << "padding comes last";
                 if (joint == none) continue;
                 ++jointSeen[joint];
-                ASSERT_TRUE(c.links[joint].pointAlone);
+                ASSERT_TRUE(c.links[joint].pin);
                 ASSERT_FALSE(isSerial(run.colour)) << "the overflow is solved in key order";
-                visit(joint, plan.pointPlaces[at]);
+                visit(joint, plan.pinPlaces[at]);
             }
             const std::uint32_t lanes =
                 (run.contactCount + blockLanes - 1) / blockLanes * blockLanes;
@@ -153,6 +153,38 @@ TEST(Plan, HoldsEveryLinkAndBodyOnceAndKeepsIslandsWholeForAnySizeOfBatch) {
                 EXPECT_EQ(batch.giant, batch.constraints > batchSize);
             }
         }
+    }
+}
+
+TEST(Plan, KeepsWhatOverflowsAtAHubInKeyOrderOutOfTheLanes) {
+    // Two hubs: one pinned to 80 bodies that move, one to 80 that do not. Colours are 64.
+    Case c;
+    const auto body = [&](bool moves) {
+        c.moves.push_back(moves);
+        const auto place = static_cast<std::uint32_t>(c.moves.size() - 1);
+        if (moves) c.awake.push_back(place);
+        return place;
+    };
+    for (const bool movingRim : {true, false}) {
+        const std::uint32_t hub = body(true);
+        for (int i = 0; i < 80; ++i) {
+            const std::uint32_t rim = body(movingRim);
+            c.links.push_back({hub, rim, static_cast<std::uint32_t>(c.links.size()), true});
+        }
+    }
+    c.jointLinks = static_cast<std::uint32_t>(c.links.size());
+    for (const std::uint32_t batchSize : {10u, standardBatchSize}) {
+        const Plan plan = planOf(c, batchSize);
+        expectSound(c, plan);
+        EXPECT_EQ(plan.overflow, 32u);
+        std::uint32_t serial = 0;
+        for (const ColourRun& run : plan.runs) {
+            if (!isSerial(run.colour)) continue;
+            ++serial;
+            EXPECT_EQ(run.jointCount, 16u);
+            EXPECT_EQ(run.pinCount, 0u);
+        }
+        EXPECT_EQ(serial, 2u);
     }
 }
 

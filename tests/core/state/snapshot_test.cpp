@@ -261,6 +261,9 @@ TEST(Snapshot, ThatContradictsItselfIsRefusedByRecordAndField) {
     expect("contact 1 shapeA", [](WorldState& s) { std::swap(s.contacts[0], s.contacts[1]); });
     expect("contact 0 shapeB", [](WorldState& s) { s.contacts[0].shapeB = 77; });
     expect("contact 0 relative", [](WorldState& s) { s.contacts[0].relative.q = {2.0f, 0.0f}; });
+    expect("contact 0 shapeB", [](WorldState& s) {
+        s.shapes[s.contacts[0].shapeA - 1].mask = 0;  // shape ids of this world count from 1
+    });
     expect("player 0", [](WorldState& s) { s.players.clear(); });
     expect("player 1 id", [](WorldState& s) { s.players[1].id = 0; });
     expect("player 1 body", [](WorldState& s) { s.players[1].body = 66; });

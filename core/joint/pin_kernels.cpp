@@ -1,7 +1,7 @@
-// The passes over joints of a point alone: `PointPart` of parts.h, W joints side by side, operation
-// by operation in its order, so that the bits are those of the one by one form.
+// The passes over pins: `PointPart` of parts.h, W joints side by side, operation by operation in
+// its order, so that the bits are those of the one by one form.
 
-#include "core/joint/point_block.h"
+#include "core/joint/pin_block.h"
 #include "core/solver/body_lanes.h"
 
 namespace huestep {
@@ -10,13 +10,13 @@ namespace {
 
 /// The two bodies of W joints and where their anchors are by now.
 template <int W>
-struct Point {
+struct Pins {
     VelocityLanes<W> a, b;
     LaneF<W> mA, iA, mB, iB;
     LaneF<W> rAx, rAy, rBx, rBy;
 
-    HUESTEP_INLINE Point(const SolverBody* bodies, const PointBlock& block, int lane,
-                         const DeltaLanes<W>& turnA, const DeltaLanes<W>& turnB)
+    HUESTEP_INLINE Pins(const SolverBody* bodies, const PinBlock& block, int lane,
+                        const DeltaLanes<W>& turnA, const DeltaLanes<W>& turnB)
         : a(gatherVelocities<W>(bodies, block.bodyA + lane)),
           b(gatherVelocities<W>(bodies, block.bodyB + lane)),
           mA(loadLanes<W>(block.mA + lane)),
@@ -43,7 +43,7 @@ struct Point {
         b.w = b.w + iB * (rBx * py - rBy * px);
     }
 
-    HUESTEP_INLINE void store(SolverBody* bodies, const PointBlock& block, int lane) const {
+    HUESTEP_INLINE void store(SolverBody* bodies, const PinBlock& block, int lane) const {
         SolverBody trash;
         scatterVelocities<W>(bodies, trash, block.bodyA + lane, a);
         scatterVelocities<W>(bodies, trash, block.bodyB + lane, b);
@@ -51,21 +51,22 @@ struct Point {
 };
 
 template <int W>
-HUESTEP_INLINE void warmStartLanes(SolverBody* bodies, PointBlock& block, int lane,
+HUESTEP_INLINE void warmStartLanes(SolverBody* bodies, PinBlock& block, int lane,
                                    const JointPass&) {
     const DeltaLanes<W> turnA = gatherDeltas<W>(bodies, block.bodyA + lane);
     const DeltaLanes<W> turnB = gatherDeltas<W>(bodies, block.bodyB + lane);
-    Point<W> point(bodies, block, lane, turnA, turnB);
-    point.apply(loadLanes<W>(block.impulseX + lane), loadLanes<W>(block.impulseY + lane));
-    point.store(bodies, block, lane);
+    Pins<W> pins(bodies, block, lane, turnA, turnB);
+    pins.apply(loadLanes<W>(block.impulseX + lane), loadLanes<W>(block.impulseY + lane));
+    pins.b.w = pins.b.w + splat<W>(0.0f);  // as by the other parts' impulses, which are none
+    pins.store(bodies, block, lane);
 }
 
 template <int W>
-HUESTEP_INLINE void solveLanes(SolverBody* bodies, PointBlock& block, int lane,
+HUESTEP_INLINE void solveLanes(SolverBody* bodies, PinBlock& block, int lane,
                                const JointPass& pass) {
     const DeltaLanes<W> moveA = gatherDeltas<W>(bodies, block.bodyA + lane);
     const DeltaLanes<W> moveB = gatherDeltas<W>(bodies, block.bodyB + lane);
-    Point<W> p(bodies, block, lane, moveA, moveB);
+    Pins<W> p(bodies, block, lane, moveA, moveB);
     const LaneF<W> errorX =
         ((moveB.dx - moveA.dx) + loadLanes<W>(block.centersX + lane)) + (p.rBx - p.rAx);
     const LaneF<W> errorY =
@@ -98,37 +99,25 @@ HUESTEP_INLINE void solveLanes(SolverBody* bodies, PointBlock& block, int lane,
     p.store(bodies, block, lane);
 }
 
-// An entry a pass and width, as in contact_kernels.cpp.
-#define HUESTEP_PASS(name, W, attributes)                                                \
-    attributes void name##W(SolverBody* bodies, PointBlock* blocks, std::uint32_t count, \
-                            const JointPass& pass) {                                     \
-        for (std::uint32_t first = 0; first < count; first += W) {                       \
-            name##Lanes<W>(bodies, blocks[first / blockLanes],                           \
-                           static_cast<int>(first % blockLanes), pass);                  \
-        }                                                                                \
-    }
-#define HUESTEP_WIDTH(W, attributes)       \
-    HUESTEP_PASS(warmStart, W, attributes) \
-    HUESTEP_PASS(solve, W, attributes)     \
-    constexpr PointKernels kernels##W{warmStart##W, solve##W};
+#define HUESTEP_KERNELS(W, attributes)                          \
+    HUESTEP_PASS(warmStart, PinBlock, JointPass, W, attributes) \
+    HUESTEP_PASS(solve, PinBlock, JointPass, W, attributes)
+#define HUESTEP_ENTRY(W, attributes) PinKernels{warmStart##W, solve##W},
 
-HUESTEP_WIDTH(1, )
-HUESTEP_WIDTH(4, )
-#if defined(__x86_64__)
-HUESTEP_WIDTH(8, __attribute__((target("avx2"), flatten, noinline)))
-HUESTEP_WIDTH(16, __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"), flatten, noinline)))
-#endif
+HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
+
+constexpr PinKernels byWidth[] = {HUESTEP_EACH_WIDTH(HUESTEP_ENTRY)};
 
 }  // namespace
 
-bool isPointAlone(const JointInfo& info, const JointImpulses& impulses) {
+bool isPin(const JointInfo& info, const JointImpulses& impulses) {
     constexpr std::uint32_t others = JointInfo::spring | JointInfo::limit | JointInfo::motor;
     return info.kind() == JointKind::Revolute && (info.flags & others) == 0 &&
            impulses.spring == 0.0f && impulses.motor == 0.0f && impulses.lower == 0.0f &&
            impulses.upper == 0.0f;
 }
 
-void setPointLane(PointBlock& block, std::uint32_t lane, const JointRow& row) {
+void setPinLane(PinBlock& block, std::uint32_t lane, const JointRow& row) {
     block.bodyA[lane] = row.bodyA;
     block.bodyB[lane] = row.bodyB;
     block.mA[lane] = row.mA;
@@ -145,26 +134,12 @@ void setPointLane(PointBlock& block, std::uint32_t lane, const JointRow& row) {
     block.impulseY[lane] = row.impulses.point.y;
 }
 
-void clearPointLane(PointBlock& block, std::uint32_t lane) {
-    setPointLane(block, lane, JointRow{});
+void clearPinLane(PinBlock& block, std::uint32_t lane) {
+    setPinLane(block, lane, JointRow{});
 }
 
-const PointKernels& pointKernels(Simd simd) {
-    switch (simd) {
-        case Simd::Scalar:
-            return kernels1;
-        case Simd::Sse2:
-        case Simd::Neon:
-            return kernels4;
-#if defined(__x86_64__)
-        case Simd::Avx2:
-            return kernels8;
-        case Simd::Avx512:
-            return kernels16;
-#endif
-        default:
-            return pointKernels(availableSimd().back());
-    }
+const PinKernels& pinKernels(Simd simd) {
+    return byWidth[widthIndex(simd)];
 }
 
 }  // namespace huestep
