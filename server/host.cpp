@@ -162,6 +162,14 @@ Status Host::Inside::addSession(const SessionSpec& spec, Instant now) {
     RecoveryRequest request{spec.name, config.fingerprint, &spec.scene, *key, {executor.get()}};
     Result<RecoveredSession> recovered = recoverSession(**store, request);
     if (!recovered) return recovered.error();
+    if (recovered->otherScene) {
+        LogLine("scene_kept")
+            .with("session", spec.name)
+            .with("text", folder + " holds a session of another scene, " + recovered->scene +
+                              ", which goes on; for " + spec.scene.name +
+                              " take another session name or data folder")
+            .to(config.log, Severity::Warning);
+    }
     for (const std::string& why : recovered->contents.refusedSnapshots) {
         LogLine("snapshot_refused")
             .with("session", spec.name)

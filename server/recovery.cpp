@@ -39,6 +39,14 @@ Result<Scene> storedScene(LogStore& store, const std::vector<std::string>& names
     return *request.scene;
 }
 
+/// Whether the request names another scene than the folder keeps. Both as they are read back: what
+/// a file leaves out counts for nothing.
+bool isOther(const Scene& kept, const Scene* wanted) {
+    if (wanted == nullptr) return false;
+    const Result<Scene> readBack = protocol::readScene(protocol::writeSceneBinary(*wanted));
+    return !readBack || !(*readBack == kept);
+}
+
 Result<ResumeKey> storedKey(LogStore& store, const std::vector<std::string>& names,
                             const RecoveryRequest& request) {
     if (!holds(names, keyFile)) {
@@ -161,7 +169,9 @@ Result<RecoveredSession> recoverSession(LogStore& store, const RecoveryRequest& 
         {request.name, epoch, *key, std::move(base), std::move(tail), std::move(*world)},
         std::move(*contents),
         {request.name, request.fingerprint, epoch},
-        created};
+        scene->name,
+        created,
+        !created && isOther(*scene, request.scene)};
 }
 
 }  // namespace huestep::server

@@ -20,7 +20,9 @@ struct RecoveredSession {
     SessionStart start;
     protocol::JournalContents contents;  ///< for `JournalWriter::open`
     protocol::JournalIdentity identity;  ///< of this start: its epoch is one up
+    std::string scene;                   ///< the name of the scene that tick 0 was built from
     bool created = false;                ///< the folder was new
+    bool otherScene = false;             ///< the request's scene is not the folder's, which stays
 };
 
 struct RecoveryRequest {

@@ -28,6 +28,7 @@ struct Life {
         Result<RecoveredSession> recovered = recoverSession(store, request);
         if (!recovered) return recovered.error();
         created = recovered->created;
+        otherScene = recovered->otherScene;
         Result<protocol::JournalWriter> opened = protocol::JournalWriter::open(
             store, recovered->identity, recovered->contents, recovered->start.world.tick());
         if (!opened) return opened.error();
@@ -56,6 +57,7 @@ struct Life {
     Limits limits;
     RecoveryRequest request;
     bool created = false;
+    bool otherScene = false;
     std::optional<protocol::JournalWriter> writer;
     std::optional<Session> session;
 };
@@ -85,6 +87,27 @@ TEST(Recovery, AnEmptyFolderStartsFromTheScene) {
     EXPECT_EQ(life.session->tick(), 0u);
     EXPECT_EQ(life.session->epoch(), 1u);
     EXPECT_EQ(life.session->world().fullRoot(), World::create(scene)->fullRoot());
+}
+
+TEST(Recovery, AFolderKeepsItsSceneAndSaysSoWhereAnotherIsAskedFor) {
+    MemoryStore disk;
+    const Scene scene = deskScene();
+    {
+        Life first(disk, {}, &scene);
+        ASSERT_TRUE(first.open().ok());
+        EXPECT_FALSE(first.otherScene);
+    }
+    {
+        Life same(disk, {}, &scene);
+        ASSERT_TRUE(same.open().ok());
+        EXPECT_FALSE(same.otherScene);
+    }
+    Scene other = scene;
+    other.gravity.y = -3.0f;
+    Life asked(disk, {}, &other);
+    ASSERT_TRUE(asked.open().ok());
+    EXPECT_TRUE(asked.otherScene);
+    EXPECT_EQ(asked.session->world().fullRoot(), World::create(scene)->fullRoot());
 }
 
 TEST(Recovery, WithoutASceneThereIsNothingToStartFrom) {
