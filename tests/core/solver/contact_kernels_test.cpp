@@ -175,11 +175,15 @@ struct Point {
     double x = 0, y = 0;
 };
 
+double wide(float v) {
+    return static_cast<double>(v);
+}
+
 /// An anchor now: turned with its body from how it was when the manifold was made. In double.
-Point anchorNow(const SolverPose& pose, double cosine, double sine, double x, double y) {
-    const double by = std::atan2(double{pose.s}, double{pose.c}) - std::atan2(sine, cosine);
-    return {double{pose.x} + std::cos(by) * x - std::sin(by) * y,
-            double{pose.y} + std::sin(by) * x + std::cos(by) * y};
+Point anchorNow(const SolverPose& pose, float cosine, float sine, double x, double y) {
+    const double by = std::atan2(wide(pose.s), wide(pose.c)) - std::atan2(wide(sine), wide(cosine));
+    return {wide(pose.x) + std::cos(by) * x - std::sin(by) * y,
+            wide(pose.y) + std::sin(by) * x + std::cos(by) * y};
 }
 
 TEST(ContactKernels, RefreshFollowsTheBodiesFromWhereTheManifoldWasMadeAtEveryWidth) {
@@ -193,12 +197,12 @@ TEST(ContactKernels, RefreshFollowsTheBodiesFromWhereTheManifoldWasMadeAtEveryWi
         contactKernels(Simd::Scalar)
             .refresh(scalar.bodies.data(), poses.data(), scalar.blocks.data(), count);
         for (const Simd simd : availableSimd()) {
-            Rows wide = start;
-            contactKernels(simd).refresh(wide.bodies.data(), poses.data(), wide.blocks.data(),
+            Rows lanes = start;
+            contactKernels(simd).refresh(lanes.bodies.data(), poses.data(), lanes.blocks.data(),
                                          count);
-            ASSERT_EQ(
-                std::memcmp(wide.blocks.data(), scalar.blocks.data(), count * sizeof(ContactBlock)),
-                0)
+            ASSERT_EQ(std::memcmp(lanes.blocks.data(), scalar.blocks.data(),
+                                  count * sizeof(ContactBlock)),
+                      0)
                 << nameOf(simd);
         }
         for (std::uint32_t i = 0; i < start.count; ++i) {
@@ -206,24 +210,23 @@ TEST(ContactKernels, RefreshFollowsTheBodiesFromWhereTheManifoldWasMadeAtEveryWi
             const std::size_t lane = i % blockLanes;
             const auto a = static_cast<std::size_t>(readPlace(block.bodyA[lane]));
             const auto b = static_cast<std::size_t>(readPlace(block.bodyB[lane]));
-            const double nx = block.normalX[lane], ny = block.normalY[lane];
+            const double nx = wide(block.normalX[lane]), ny = wide(block.normalY[lane]);
             const SolverBody& u = scalar.bodies[a];
             const SolverBody& v = scalar.bodies[b];
             for (const ContactPointRows& p : block.points) {
-                const double ax = p.anchorAx[lane], ay = p.anchorAy[lane];
-                const double bx = p.anchorBx[lane], by = p.anchorBy[lane];
+                const double ax = wide(p.anchorAx[lane]), ay = wide(p.anchorAy[lane]);
+                const double bx = wide(p.anchorBx[lane]), by = wide(p.anchorBy[lane]);
                 const Point onA =
                     anchorNow(poses[a], block.cosineA[lane], block.sineA[lane], ax, ay);
                 const Point onB =
                     anchorNow(poses[b], block.cosineB[lane], block.sineB[lane], bx, by);
                 const double apart = nx * (onB.x - onA.x) + ny * (onB.y - onA.y);
                 const double met = nx * (bx - ax) + ny * (by - ay);
-                ASSERT_NEAR(p.separation[lane], double{p.madeSeparation[lane]} + apart - met, 3e-5);
-                const double vx =
-                    (double{v.vx} - double{v.w} * by) - (double{u.vx} - double{u.w} * ay);
-                const double vy =
-                    (double{v.vy} + double{v.w} * bx) - (double{u.vy} + double{u.w} * ax);
-                ASSERT_NEAR(p.approach[lane], nx * vx + ny * vy, 3e-5);
+                ASSERT_NEAR(wide(p.separation[lane]), wide(p.madeSeparation[lane]) + apart - met,
+                            3e-5);
+                const double vx = (wide(v.vx) - wide(v.w) * by) - (wide(u.vx) - wide(u.w) * ay);
+                const double vy = (wide(v.vy) + wide(v.w) * bx) - (wide(u.vy) + wide(u.w) * ax);
+                ASSERT_NEAR(wide(p.approach[lane]), nx * vx + ny * vy, 3e-5);
                 ASSERT_EQ(p.maxNormalImpulse[lane], 0.0f);
             }
         }
