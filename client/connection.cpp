@@ -102,6 +102,7 @@ void Connection::onFound(uv_async_t* async) {
     std::optional<Result<SocketAddresses>> found = self.m_lookup->take();
     if (!found) return;
     self.m_lookup.reset();
+    if (!*found && self.m_addresses.empty()) return self.giveUp(found->error().message);
     if (!*found) return self.drop(found->error().message);
     self.m_addresses = std::move(**found);
     self.m_nextAddress = 0;
@@ -189,11 +190,14 @@ void Connection::received(std::span<const std::byte> bytes) {
     m_pulse.heard();
     std::vector<protocol::Message> messages;
     const Status fed = m_splitter->feed(bytes, messages);
+    m_framed = m_framed || !messages.empty();
     const Socket* before = m_socket;
     for (protocol::Message& message : messages) {
         m_events.message(std::move(message));
         if (m_socket != before) return;  // the message ended this connection
     }
+    if (!fed && !m_framed)
+        return giveUp("this is not a Huestep server (" + fed.error().message + ")");
     if (!fed) return drop(fed.error().message);
     m_events.idle();
 }
@@ -223,6 +227,13 @@ void Connection::drop(const std::string& why) {
     ++m_failures;
     m_events.lost(why);
     if (!m_stopped) attemptLater();
+}
+
+void Connection::giveUp(const std::string& why) {
+    if (!m_events.hopeless) return drop(why);
+    m_lookup.reset();
+    letGo();
+    m_events.hopeless(why);
 }
 
 void Connection::letGo() {

@@ -49,6 +49,9 @@ class Connection {
         /// The connection is gone, or an attempt failed; the sentence says why. Another attempt
         /// follows by itself unless `stop` is called.
         std::function<void(const std::string& why)> lost;
+        /// Another attempt would not help: the name was never known, or what came first was no
+        /// frame. The owner calls `stop`. Empty: `lost` is called, and attempts go on.
+        std::function<void(const std::string& why)> hopeless = nullptr;
     };
 
     Connection(uv_loop_t& loop, Destination destination, Events events);
@@ -83,6 +86,7 @@ class Connection {
     void attemptLater();
     void tryNext(const std::string& why);
     void received(std::span<const std::byte> bytes);
+    void giveUp(const std::string& why);
     void letGo();
 
     uv_loop_t& m_loop;
@@ -96,6 +100,7 @@ class Connection {
     Pulse m_pulse;
     std::uint64_t m_pings = 0;
     std::optional<protocol::FrameSplitter> m_splitter;
+    bool m_framed = false;  ///< a frame has come, on this connection or one before
     std::uint32_t m_failures = 0;
     bool m_stopped = false;
     std::uint64_t m_bytesIn = 0;

@@ -2,6 +2,7 @@
 
 #include <uv.h>
 
+#include <cmath>
 #include <csignal>
 #include <optional>
 #include <utility>
@@ -35,6 +36,10 @@ bool isFinal(const protocol::Bye& bye) {
     return !bye.mayResume && bye.reason != protocol::ByeReason::ResumeRefused;
 }
 
+std::string wholeSeconds(double seconds) {
+    return std::to_string(std::lround(std::ceil(seconds))) + " s";
+}
+
 /// One client's life on a loop of its own.
 class Life {
  public:
@@ -53,7 +58,10 @@ class Life {
             m_loop, destinationOf(m_config, std::move(address)),
             Connection::Events{[this] { connected(); },
                                [this](protocol::Message m) { message(std::move(m)); },
-                               [this] { idle(); }, [this](const std::string& why) { lost(why); }});
+                               [this] { idle(); }, [this](const std::string& why) { lost(why); },
+                               [this](const std::string& why) {
+                                   fail("no connection to " + m_config.address + ": " + why);
+                               }});
         uv_timer_init(&m_loop, &m_house);
         uv_signal_init(&m_loop, &m_interrupt);
         uv_signal_init(&m_loop, &m_terminate);
@@ -81,6 +89,7 @@ class Life {
         }
         if (!m_ended) m_connection->start();
         uv_run(&m_loop, UV_RUN_DEFAULT);
+        if (m_config.onEnd && m_replica.counts().connections != 0) m_config.onEnd(statistics());
         if (m_failure) return Error{*m_failure};
         return statistics();
     }
@@ -133,6 +142,14 @@ class Life {
         const Instant now = uv_hrtime();
         const bool following = m_replica.following();
         if (following) {
+            if (!std::exchange(m_toldPlay, true)) {
+                const std::string seat =
+                    m_replica.player() == 0 ? "" : ", player " + std::to_string(m_replica.player());
+                notice("connected to " + m_config.address + ", session '" + m_config.session + "'" +
+                       seat);
+            } else if (m_toldLoss) {
+                notice("connected again");
+            }
             m_apartSince = 0;
             m_toldLoss = false;
         } else if (ofState || m_apartSince == 0) {
@@ -153,8 +170,10 @@ class Life {
         m_stateAt = 0;
         m_replica.disconnected();
         if (m_apartSince == 0) m_apartSince = uv_hrtime();
-        if (m_replica.counts().connections != 0 && !std::exchange(m_toldLoss, true)) {
-            notice("connection lost: " + why);
+        if (!std::exchange(m_toldLoss, true)) {
+            const bool never = m_replica.counts().connections == 0;
+            notice((never ? "no connection to " + m_config.address : "connection lost") + ": " +
+                   why + "; trying again for " + wholeSeconds(limitSeconds()));
         }
         m_lastWhy = why;
     }
@@ -167,11 +186,9 @@ class Life {
         if (waits && static_cast<double>(now - m_stateAt) > m_config.silenceSeconds * 1e9) {
             m_connection->drop("the server does not send the session's state");
         }
-        const double limit = m_replica.counts().connections == 0 ? m_config.connectSeconds
-                                                                 : m_config.reconnectSeconds;
+        const double limit = limitSeconds();
         if (m_apartSince != 0 && static_cast<double>(now - m_apartSince) > limit * 1e9) {
-            fail("no connection to " + m_config.address + ": " +
-                 (m_lastWhy.empty() ? "no answer" : m_lastWhy));
+            fail("no connection to " + m_config.address + ": " + reason());
         }
         if (m_config.onProgress && now > m_progressAt + progressMs * 1'000'000) {
             m_progressAt = now;
@@ -179,8 +196,20 @@ class Life {
         }
     }
 
+    /// How long to be apart before it is given up.
+    [[nodiscard]] double limitSeconds() const {
+        return m_replica.counts().connections == 0 ? m_config.connectSeconds
+                                                   : m_config.reconnectSeconds;
+    }
+
+    /// Why there is no connection, as far as it is known.
+    [[nodiscard]] std::string reason() const { return m_lastWhy.empty() ? "no answer" : m_lastWhy; }
+
     void leave() {
         if (m_ended) return;
+        if (m_replica.counts().connections == 0)
+            return fail("stopped before it was in session '" + m_config.session + "' at " +
+                        m_config.address + ": " + reason());
         m_replica.leave();
         flush();
         end();
@@ -228,6 +257,7 @@ class Life {
     Instant m_apartSince = 0;  ///< 0: playing
     Instant m_stateAt = 0;     ///< of Welcome or, later, of the last piece of the state
     bool m_toldLoss = false;   ///< since it last played
+    bool m_toldPlay = false;
     Instant m_progressAt = 0;
     std::uint64_t m_botTicks = 0;
     std::string m_lastWhy;

@@ -47,11 +47,16 @@ struct PlayerConfig {
     Resolve resolve = askSystem;
     /// Called once a second with the numbers so far; may be empty.
     std::function<void(const Statistics&)> onProgress;
-    /// Called for what a person should know: refusals, reconnects, desyncs; may be empty.
+    /// Called for what a person should know: refusals, connections made and
+    /// lost, desyncs; may be empty.
     std::function<void(const std::string& sentence)> onNotice;
+    /// Called once, before `play` returns, if it ever was in the session: also where `play` then
+    /// fails, so that what was verified is known. May be empty.
+    std::function<void(const Statistics&)> onEnd;
 };
 
-/// Plays to the end. Fails with a sentence if it never got in, was refused, or lost the server
+/// Plays to the end. Fails with a sentence if it never got in, also because it was stopped before,
+/// was refused, or lost the server
 /// for longer than `reconnectSeconds`.
 Result<Statistics> play(PlayerConfig config);
 

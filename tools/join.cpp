@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <random>
 
 #include "client/player.h"
@@ -120,15 +121,21 @@ Answer join(const Options& options) {
     config.onNotice = [terminal](const std::string& sentence) {
         std::fprintf(stderr, "%s%s\n", terminal ? "\r\033[K" : "", sentence.c_str());
     };
+    std::optional<client::Statistics> last;
+    config.onEnd = [&last](const client::Statistics& statistics) { last = statistics; };
     const std::uint64_t begin = nanoseconds();
     const Result<client::Statistics> played = client::play(std::move(config));
     const double seconds = static_cast<double>(nanoseconds() - begin) * 1e-9;
     if (terminal) std::fputs("\r\033[K", stderr);
+    if (last && options.json) {
+        Json document = asJson(options, *last, seconds);
+        if (!played) document["failure"] = played.error().message;
+        print(document);
+    } else if (last) {
+        printText(*last, seconds);
+    }
+    // A server that is gone does not take with it what was verified before.
     if (!played) return played.error();
-    if (options.json)
-        print(asJson(options, *played, seconds));
-    else
-        printText(*played, seconds);
     return played->mismatches == 0 && played->committedLost == 0 ? Exit::Done : Exit::Differs;
 }
 

@@ -135,7 +135,7 @@ TEST(Silence, AServerThatTakesTheConnectionAndSaysNothingIsGivenUpAndTriedAnew) 
     });
     EXPECT_TRUE(greeted);
     EXPECT_TRUE(asked) << "given up without having been asked";
-    EXPECT_TRUE(playing.stop().ok());
+    EXPECT_FALSE(playing.stop().ok()) << "it never got in";
 }
 
 TEST(Silence, WhoNeverGetsAnAnswerIsToldThatTheServerIsSilent) {
@@ -174,6 +174,35 @@ TEST(Silence, AServerThatAnswersPingsButSendsNoStateIsGivenUpToo) {
     EXPECT_TRUE(playing.stop().ok());
 }
 
+TEST(Attempts, APeerWhoseFirstBytesAreNoFrameIsNotTriedAgain) {
+    const ListeningSocket listening;
+    Playing playing(playerFor(listening.address()));
+    ASSERT_TRUE(listening.ready(20'000));
+    const SocketEnd peer = listening.accept();
+    const std::string banner = "SSH-2.0-OpenSSH_9.2p1 Debian\r\n";
+    ASSERT_TRUE(peer.send(std::as_bytes(std::span(banner))));
+    ASSERT_TRUE(playing.ends(20)) << "of the 60 s it may try";
+    const Result<Statistics> result = playing.result();
+    ASSERT_FALSE(result.ok());
+    EXPECT_NE(result.error().message.find(listening.address() + ": this is not a Huestep server"),
+              std::string::npos)
+        << result.error().message;
+    EXPECT_FALSE(listening.ready(0)) << "it came again";
+}
+
+TEST(Attempts, TheFirstFailureIsToldWithTheTimeThatIsLeft) {
+    PlayerConfig config = playerFor("127.0.0.1:" + std::to_string(deadPort()));
+    config.connectSeconds = 1.0;
+    std::vector<std::string> notices;
+    config.onNotice = [&notices](const std::string& sentence) { notices.push_back(sentence); };
+    const std::string address = config.address;
+    const Result<Statistics> result = play(std::move(config));
+    ASSERT_FALSE(result.ok());
+    ASSERT_EQ(notices.size(), 1u) << "once, however many attempts follow";
+    EXPECT_EQ(notices.front(),
+              "no connection to " + address + ": connection refused; trying again for 1 s");
+}
+
 TEST(Lookup, EveryAddressOfANameIsTriedInTurnWithinOneAttempt) {
     const ListeningSocket listening;
     PlayerConfig config = playerFor("somewhere:7777");
@@ -191,18 +220,20 @@ TEST(Lookup, EveryAddressOfANameIsTriedInTurnWithinOneAttempt) {
         return std::holds_alternative<protocol::Hello>(message);
     }));
     EXPECT_EQ(asked, 1);
-    EXPECT_TRUE(playing.stop().ok());
+    EXPECT_FALSE(playing.stop().ok()) << "it never got in";
 }
 
-TEST(Lookup, WhatTheResolverSaysIsToldInTheEnd) {
+TEST(Lookup, ANameThatNobodyKnowsIsNotAskedForAgain) {
     PlayerConfig config = playerFor("somewhere:7777");
-    config.connectSeconds = 0.2;
-    config.resolve = [](const protocol::Address&) -> Result<SocketAddresses> {
+    int asked = 0;
+    config.resolve = [&asked](const protocol::Address&) -> Result<SocketAddresses> {
+        ++asked;
         return Error{"nobody knows this name"};
     };
     const Result<Statistics> result = play(std::move(config));
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().message, "no connection to somewhere:7777: nobody knows this name");
+    EXPECT_EQ(asked, 1);
 }
 
 TEST(Lookup, TheSystemKnowsNumbersAndTheirPort) {
@@ -237,7 +268,7 @@ TEST(Lookup, AClientThatIsToldToStopDoesNotWaitForTheResolver) {
     auto stopped = std::async(std::launch::async, [&] { return playing.stop(); });
     EXPECT_EQ(stopped.wait_for(std::chrono::seconds(20)), std::future_status::ready);
     stuck.letGo->set_value();
-    EXPECT_TRUE(stopped.get().ok());
+    EXPECT_FALSE(stopped.get().ok()) << "it never got in";
 }
 
 TEST(Lookup, CtrlCDoesNotWaitForTheResolver) {
@@ -250,7 +281,7 @@ TEST(Lookup, CtrlCDoesNotWaitForTheResolver) {
     ASSERT_EQ(::raise(SIGINT), 0);
     EXPECT_TRUE(playing.ends(20));
     stuck.letGo->set_value();
-    EXPECT_TRUE(playing.result().ok());
+    EXPECT_FALSE(playing.result().ok()) << "it never got in";
 }
 
 TEST(Sigpipe, SendingToAServerThatIsGoneEndsTheConnectionAndNotTheProcess) {
