@@ -94,15 +94,18 @@ Status measureTime(const NamedScene& scene, BenchResult& row, Progress& progress
     return Done{};
 }
 
-Status benchScene(const NamedScene& scene, int repeats, std::vector<BenchResult>& rows) {
+/// Whether it came to its end; false: stopped by Ctrl-C.
+Result<bool> benchScene(const NamedScene& scene, int repeats, std::vector<BenchResult>& rows) {
     const std::uint64_t runs = rows.size() * static_cast<std::uint64_t>(repeats + 1);
     Progress progress(scene.name, runs * rows.front().ticks);
     for (BenchResult& row : rows)
-        if (const Status done = measureErrors(scene, row, progress); !done) return done;
+        if (const Status done = measureErrors(scene, row, progress); !done) return done.error();
     for (int repeat = 0; repeat < repeats; ++repeat)
-        for (BenchResult& row : rows)
-            if (const Status done = measureTime(scene, row, progress); !done) return done;
-    return Done{};
+        for (BenchResult& row : rows) {
+            if (interrupted()) return false;
+            if (const Status done = measureTime(scene, row, progress); !done) return done.error();
+        }
+    return !interrupted();
 }
 
 /// What an engine leaves out of a scene is said once, however many rows it has.
@@ -132,13 +135,17 @@ Answer bench(const Options& options) {
 
     std::vector<BenchResult> results;
     bool same = true;
+    std::size_t measured = 0;  // scenes
     for (const NamedScene& scene : scenes) {
         const std::uint64_t ticks = options.ticks != 0 ? options.ticks : scene.ticks;
         std::vector<BenchResult> rows = rowsOf(scene, ticks, *engines, *threads);
-        const Status done = benchScene(scene, options.repeats, rows);
+        const Result<bool> done = benchScene(scene, options.repeats, rows);
         if (!done) return done.error();
         // A scene that Ctrl-C cut short has no figures worth showing; those before it have.
-        if (interrupted()) break;
+        if (!*done) break;
+        ++measured;
+        std::fprintf(stderr, "%s: measured, scene %zu of %zu\n", scene.name.c_str(), measured,
+                     scenes.size());
         showNotes(rows);
         for (BenchResult& row : rows) {
             same = same && row.sameHash;
@@ -146,13 +153,17 @@ Answer bench(const Options& options) {
         }
     }
     if (options.json)
-        print(benchJson(results));
-    else
+        print(benchJson(results, measured == scenes.size()));
+    else if (!results.empty())
         printBench(results);
+    const std::string reached =
+        std::to_string(measured) + " of " + std::to_string(scenes.size()) + " scenes measured";
+    if (results.empty()) return stopped("with " + reached);
     const std::string csv = benchCsv(results);
     const Status written = csvFile->write(std::as_bytes(std::span(csv)));
     if (!written) return written.error();
-    return same && !interrupted() ? Exit::Done : Exit::Differs;
+    if (measured != scenes.size()) return stopped("with " + reached);
+    return same ? Exit::Done : Exit::Differs;
 }
 
 }  // namespace

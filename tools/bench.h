@@ -28,7 +28,8 @@ struct BenchResult {
     [[nodiscard]] double psm() const;
 };
 
-Json benchJson(const std::vector<BenchResult>& results);
+/// `finished`: of all scenes that were asked for.
+Json benchJson(const std::vector<BenchResult>& results, bool finished);
 void printBench(const std::vector<BenchResult>& results);
 std::string benchCsv(const std::vector<BenchResult>& results);
 

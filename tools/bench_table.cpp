@@ -25,7 +25,7 @@ double BenchResult::psm() const {
     return static_cast<double>(sum) * 1e-6 / static_cast<double>(leastByTick.size());
 }
 
-Json benchJson(const std::vector<BenchResult>& results) {
+Json benchJson(const std::vector<BenchResult>& results, bool finished) {
     Json rows = Json::array();
     for (const BenchResult& r : results)
         rows.push_back({{"scene", r.scene},
@@ -47,6 +47,7 @@ Json benchJson(const std::vector<BenchResult>& results) {
     return {{"machine", machineName()},
             {"compiler", compilerName()},
             {"commit", commitName()},
+            {"finished", finished},
             {"results", rows}};
 }
 

@@ -13,14 +13,19 @@
 namespace huestep::tools {
 
 enum class Exit : int {
-    Done = 0,     ///< done, or equal
-    Differs = 1,  ///< a difference, or a failed check
-    BadUse = 2    ///< bad use or bad input, with one sentence on standard error
+    Done = 0,      ///< done, or equal
+    Differs = 1,   ///< a difference, or a failed check
+    BadUse = 2,    ///< bad use or bad input, with one sentence on standard error
+    Stopped = 130  ///< by Ctrl-C before the end, as a shell says it; what there is was printed
 };
 
 /// How an action ended; the sentence of a failure becomes `Exit::BadUse`.
 using Answer = Result<Exit>;
 using Task = std::function<Answer()>;
+
+/// Says on standard error that Ctrl-C came before the end, and how far the work had come: "after 3
+/// of 10 ticks".
+Exit stopped(const std::string& reached);
 
 /// The program's command line and the action that the user chose.
 struct Menu {

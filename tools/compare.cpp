@@ -27,6 +27,7 @@ bool contradicts(const std::map<std::uint64_t, std::uint64_t>& recorded, std::ui
 Outcome play(const Story& story, const Way& way, const Roots* expected, Roots* made,
              Progress& progress) {
     Outcome outcome;
+    if (interrupted()) return outcome;  // a world for nothing takes time as well
     Playback playback(story, way);
     const World& world = playback.world();
     const std::uint64_t start = story.start->tick();
@@ -51,6 +52,9 @@ Outcome play(const Story& story, const Way& way, const Roots* expected, Roots* m
             break;
         }
     }
+    // A reference that was stopped has no hashes for the ticks after it.
+    const bool whole = expected == nullptr || expected->size() >= world.tick() - start;
+    outcome.ended = playback.done() && whole;
     outcome.tick = world.tick();
     outcome.motionRoot = world.motionRoot();
     outcome.fullRoot = world.fullRoot();
@@ -71,6 +75,16 @@ void sideBySide(std::size_t count, int jobs, const std::function<void(std::size_
 }
 
 }  // namespace
+
+bool Comparison::finished() const {
+    return decided() == outcomes.size();
+}
+
+std::size_t Comparison::decided() const {
+    const auto count = std::count_if(outcomes.begin(), outcomes.end(),
+                                     [](const Outcome& outcome) { return outcome.decided(); });
+    return static_cast<std::size_t>(count);
+}
 
 Comparison playAll(const std::vector<Story>& stories, const std::vector<Combination>& combinations,
                    int jobs) {
@@ -101,7 +115,6 @@ Comparison playAll(const std::vector<Story>& stories, const std::vector<Combinat
         const Story& story = stories[c.story];
         result.outcomes[others[k]] = play(story, c.way, &roots[story.reference], nullptr, progress);
     });
-    result.finished = !interrupted();
     return result;
 }
 

@@ -25,12 +25,18 @@ struct Outcome {
     std::optional<std::uint64_t> differsAt;
     bool recordDiffers = false;  ///< it was a recorded root
     std::string failure;         ///< a snapshot that did not restore
-    [[nodiscard]] bool equal() const { return !differsAt && failure.empty(); }
+    bool ended = false;          ///< played and compared to its end; false: stopped by Ctrl-C
+    [[nodiscard]] bool fails() const { return differsAt || !failure.empty(); }
+    /// Of one that does not fail: only at its end is it known to be equal.
+    [[nodiscard]] bool equal() const { return ended && !fails(); }
+    /// Whether there is nothing more to learn of it.
+    [[nodiscard]] bool decided() const { return ended || fails(); }
 };
 
 struct Comparison {
-    std::vector<Outcome> outcomes;  ///< place i: of combination i
-    bool finished = true;           ///< false: stopped by Ctrl-C
+    std::vector<Outcome> outcomes;              ///< place i: of combination i
+    [[nodiscard]] bool finished() const;        ///< false: stopped by Ctrl-C
+    [[nodiscard]] std::size_t decided() const;  ///< outcomes that are
 };
 
 /// Plays all combinations, `jobs` at a time. The first combination of each story that is its own

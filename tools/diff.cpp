@@ -18,12 +18,13 @@ struct Finding {
     std::uint64_t tick = 0;
     std::string sentence;
     std::optional<Difference> field;
+    bool stopped = false;  // by Ctrl-C, with nothing found so far
 };
 
 Finding compareWorlds(const World& left, const World& right) {
     const std::optional<Difference> difference = firstDifference(left, right);
     if (!difference) return {};
-    return {"state", left.tick(), difference->sentence(), difference};
+    return {"state", left.tick(), difference->sentence(), difference, false};
 }
 
 std::string describe(const Command& command) {
@@ -76,7 +77,8 @@ Result<Finding> compareStories(const Story& left, const Story& right) {
                            tick,
                            hex(*x) + " here, " + hex(*y) + " there; run again, both worlds are " +
                                hex(a.world().motionRoot()),
-                           {}};
+                           {},
+                           false};
         const std::string commands =
             compareCommands(commandsOf(left, tick), commandsOf(right, tick));
         const Status stepped = a.step();
@@ -88,14 +90,16 @@ Result<Finding> compareStories(const Story& left, const Story& right) {
         Finding found = compareWorlds(a.world(), b.world());
         const std::string after =
             found.what.empty() ? "; no field differs after it" : "; then " + found.sentence;
-        return Finding{"commands", tick, commands + after, found.field};
+        return Finding{"commands", tick, commands + after, found.field, false};
     }
-    if (left.end == right.end || interrupted()) return Finding{};
+    if (!a.done() && !b.done()) return Finding{"", a.world().tick(), "", {}, true};
+    if (left.end == right.end) return Finding{};
     return Finding{"length",
                    std::min(left.end, right.end),
                    "here the journal ends at tick " + std::to_string(left.end) + ", there at " +
                        std::to_string(right.end),
-                   {}};
+                   {},
+                   false};
 }
 
 Result<Finding> find(const std::string& a, const std::string& b) {
@@ -123,9 +127,12 @@ Result<Finding> find(const std::string& a, const std::string& b) {
 Answer diff(const std::string& a, const std::string& b, bool json) {
     const Result<Finding> finding = find(a, b);
     if (!finding) return finding.error();
-    const bool equal = finding->what.empty() && !interrupted();
+    const bool equal = finding->what.empty() && !finding->stopped;
     if (json) {
-        Json document = {{"left", a}, {"right", b}, {"equal", equal}};
+        Json document = {{"left", a},
+                         {"right", b},
+                         {"finished", !finding->stopped},
+                         {"equal", finding->stopped ? Json() : Json(equal)}};
         if (!finding->what.empty()) {
             Json found = {
                 {"what", finding->what}, {"tick", finding->tick}, {"sentence", finding->sentence}};
@@ -141,12 +148,13 @@ Answer diff(const std::string& a, const std::string& b, bool json) {
         print(document);
     } else if (equal) {
         std::printf("equal\n");
-    } else if (finding->what.empty()) {
+    } else if (finding->stopped) {
         std::printf("stopped before all was compared\n");
     } else {
         std::printf("%s differs at tick %llu: %s\n", finding->what.c_str(),
                     static_cast<unsigned long long>(finding->tick), finding->sentence.c_str());
     }
+    if (finding->stopped) return stopped("at tick " + std::to_string(finding->tick));
     return equal ? Exit::Done : Exit::Differs;
 }
 

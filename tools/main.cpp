@@ -17,6 +17,11 @@ CLI::App* Menu::add(const std::string& name, const std::string& purpose, const s
     return sub;
 }
 
+Exit stopped(const std::string& reached) {
+    std::fprintf(stderr, "huestep: stopped before the end, %s\n", reached.c_str());
+    return Exit::Stopped;
+}
+
 namespace {
 
 /// One sentence on standard error, as the command line's page promises.
@@ -32,7 +37,9 @@ int runProgram(int count, char** words) {
     app.set_version_flag("--version", "huestep " HUESTEP_VERSION);
     app.footer(
         "Example:\n  huestep run pyramid:base=20 --ticks 300 --threads 2\n"
-        "Each subcommand answers --help with an example of its own.");
+        "Each subcommand answers --help with an example of its own.\n"
+        "Exit status: 0 done or equal, 1 a difference, 2 bad use or bad input, 130 stopped by "
+        "Ctrl-C.");
     Menu menu{app, {}};
     addScenes(menu);
     addRun(menu);

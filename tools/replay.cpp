@@ -122,7 +122,10 @@ Answer replayLog(const Options& options) {
         printText(*journal, world, replay);
     if (snapshot->named())
         if (const Status written = snapshot->write(world.save()); !written) return written.error();
-    return replay.differsAt || world.tick() != journal->story.end ? Exit::Differs : Exit::Done;
+    if (replay.differsAt) return Exit::Differs;
+    if (world.tick() == journal->story.end) return Exit::Done;
+    return stopped("at tick " + std::to_string(world.tick()) + " of " +
+                   std::to_string(journal->story.end));
 }
 
 }  // namespace

@@ -117,10 +117,13 @@ Answer run(const Options& options) {
         print(report.asJson());
     else
         report.print();
-    if (!snapshot->named()) return Exit::Done;
-    const auto& world = static_cast<const HuestepEngine&>(**engine).world();
-    if (const Status written = snapshot->write(world.save()); !written) return written.error();
-    return Exit::Done;
+    if (snapshot->named()) {
+        const auto& world = static_cast<const HuestepEngine&>(**engine).world();
+        if (const Status written = snapshot->write(world.save()); !written) return written.error();
+    }
+    if (report.ticks == ticks) return Exit::Done;
+    return stopped("after " + std::to_string(report.ticks) + " of " + std::to_string(ticks) +
+                   " ticks");
 }
 
 }  // namespace

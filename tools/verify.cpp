@@ -124,7 +124,7 @@ Result<Plan> planJournal(const VerifyOptions& options) {
 /// The first combination that differs, in the order of the list.
 std::optional<std::size_t> firstUnequal(const Comparison& comparison) {
     for (std::size_t i = 0; i < comparison.outcomes.size(); ++i)
-        if (!comparison.outcomes[i].equal()) return i;
+        if (comparison.outcomes[i].fails()) return i;
     return std::nullopt;
 }
 
@@ -165,18 +165,22 @@ Json asJson(const VerifyOptions& options, const Plan& plan, const Comparison& co
                     {"restore_every", c.way.restoreEvery},
                     {"disturbed", c.way.disturbSeed != 0},
                     {"hashes_compared", o.rootsCompared},
-                    {"equal", o.equal()},
-                    {"tick", o.tick},
-                    {"motion", hex(o.motionRoot)},
-                    {"full", hex(o.fullRoot)}};
+                    {"equal", o.decided() ? Json(o.equal()) : Json()},
+                    {"tick", o.tick}};
+        if (o.tick != 0) {
+            row["motion"] = hex(o.motionRoot);
+            row["full"] = hex(o.fullRoot);
+        }
         if (o.differsAt) row["differs_at"] = *o.differsAt;
         rows.push_back(row);
     }
     Json json = {{"source", options.source},
                  {"engine", "huestep"},
                  {"combinations", rows},
-                 {"finished", comparison.finished},
-                 {"equal", difference.empty() && comparison.finished}};
+                 {"finished", comparison.finished()},
+                 {"equal", firstUnequal(comparison) ? Json(false)
+                           : comparison.finished()  ? Json(true)
+                                                    : Json()}};
     if (!difference.empty()) json["difference"] = difference;
     return json;
 }
@@ -187,10 +191,12 @@ void printText(const Plan& plan, const Comparison& comparison, const std::string
     for (std::size_t i = 0; i < comparison.outcomes.size(); ++i) {
         const Combination& c = plan.combinations[i];
         const Outcome& o = comparison.outcomes[i];
+        if (o.tick == 0) continue;  // stopped before its turn
         std::string by = c.way.disturbSeed != 0 ? "drops, shuffled blocks" : "";
         if (c.way.restoreEvery != 0) by = "restore every " + std::to_string(c.way.restoreEvery);
         std::string verdict = o.rootsCompared == 0 ? "reference" : "equal";
-        if (!o.equal()) verdict = "fails";
+        if (!o.decided()) verdict = "stopped at " + std::to_string(o.tick);
+        if (o.fails()) verdict = "fails";
         if (o.differsAt) verdict = "differs at " + std::to_string(*o.differsAt);
         table.add({plan.stories[c.story].name, std::to_string(c.way.threads),
                    std::string(huestep::nameOf(c.way.simd)), by, std::to_string(o.rootsCompared),
@@ -198,7 +204,7 @@ void printText(const Plan& plan, const Comparison& comparison, const std::string
         compared += o.rootsCompared;
     }
     table.print();
-    if (!comparison.finished)
+    if (!comparison.finished())
         std::printf("stopped before all was compared\n");
     else if (difference.empty())
         std::printf("equal: %zu combinations, %llu hashes compared\n", comparison.outcomes.size(),
@@ -227,13 +233,16 @@ Answer verifyWorlds(const VerifyOptions& options, Result<Plan> plan) {
 
     const Comparison comparison = playAll(plan->stories, plan->combinations, jobsOf(options));
     std::string difference;
-    if (comparison.finished)
+    if (comparison.finished())
         if (const auto i = firstUnequal(comparison)) difference = explain(*plan, comparison, *i);
     if (options.json)
         print(asJson(options, *plan, comparison, difference));
     else
         printText(*plan, comparison, difference);
-    return difference.empty() && comparison.finished ? Exit::Done : Exit::Differs;
+    if (!comparison.finished())
+        return stopped("with " + std::to_string(comparison.decided()) + " of " +
+                       std::to_string(comparison.outcomes.size()) + " combinations compared");
+    return difference.empty() ? Exit::Done : Exit::Differs;
 }
 
 Answer verify(const VerifyOptions& options, bool threadsGiven) {

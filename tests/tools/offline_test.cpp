@@ -197,7 +197,7 @@ TEST(Run, PrintsHashesAsTheyCome) {
         60.0, [&] { return process.out().find("tick 20  motion ") != std::string::npos; }))
         << process.out() << process.err();
     process.send(SIGINT);
-    EXPECT_EQ(process.wait(20.0), 0);
+    EXPECT_EQ(process.wait(20.0), 130);
 }
 
 TEST(Diff, RefusesASnapshotWithAFlippedByteAndNamesTheOffset) {
@@ -256,26 +256,62 @@ TEST(Verify, SaysWhatAPeerLeavesOutOfTheScene) {
     EXPECT_EQ(linesWith(huestep(words).err, "capsule"), 1);
 }
 
+/// A command that takes long is stopped as soon as it can be; what it says in the end.
+Ended stopped(std::vector<std::string> words) {
+    words.insert(words.begin(), huestepProgram);
+    Process process(std::move(words));
+    EXPECT_TRUE(process.catches(SIGINT, 20.0));
+    process.send(SIGINT);
+    const std::optional<int> status = process.wait(60.0);
+    EXPECT_EQ(linesWith(process.err(), "huestep: stopped before the end, "), 1) << process.err();
+    return {status.value_or(-1), process.out(), process.err()};
+}
+
 TEST(Interrupt, CtrlCEndsARunCleanlyWithWhatItHas) {
-    Process process({huestepProgram, "run", "small", "--ticks", "1000000000", "--json"});
-    ASSERT_TRUE(process.catches(SIGINT, 20.0));
-    process.send(SIGINT);  // the run itself would take hours
-    EXPECT_EQ(process.wait(20.0), 0);
-    const Json document = Json::parse(process.out(), nullptr, false);
-    ASSERT_FALSE(document.is_discarded()) << process.out();
+    const Ended ended = stopped({"run", "small", "--ticks", "1000000000", "--json"});
+    EXPECT_EQ(ended.status, 130);
+    const Json document = Json::parse(ended.out, nullptr, false);
+    ASSERT_FALSE(document.is_discarded()) << ended.out;
     EXPECT_EQ(document["interrupted"], true);
     EXPECT_NE(document["hash"]["motion"], "");
 }
 
-TEST(Interrupt, CtrlCEndsAComparisonWithoutSayingThatAllIsEqual) {
-    Process process({huestepProgram, "verify", "pyramid:base=30", "--ticks", "1000000", "--json"});
-    ASSERT_TRUE(process.catches(SIGINT, 20.0));
+TEST(Interrupt, CtrlCEndsAComparisonThatIsThenNeitherEqualNorDifferent) {
+    for (const char* engine : {"huestep", "box2d"}) {
+        const Ended ended = stopped({"verify", "pyramid:base=30", "--ticks", "1000000", "--engine",
+                                     engine, "--reorder", "--json"});
+        EXPECT_EQ(ended.status, 130) << engine;
+        const Json document = Json::parse(ended.out, nullptr, false);
+        ASSERT_FALSE(document.is_discarded()) << ended.out;
+        EXPECT_EQ(document["finished"], false) << engine;
+        EXPECT_TRUE(document["equal"].is_null()) << engine;
+        ASSERT_GE(document["combinations"].size(), 4u);
+        for (const Json& row : document["combinations"])
+            EXPECT_TRUE(row["equal"].is_null()) << engine << row;
+    }
+}
+
+TEST(Interrupt, WhatAComparisonDidNotBeginIsNotAmongItsRows) {
+    const Ended ended = stopped(
+        {"verify", "pyramid:base=30", "--ticks", "1000000", "--engine", "box2d", "--reorder"});
+    EXPECT_EQ(ended.status, 130);
+    EXPECT_EQ(linesWith(ended.out, "0 ticks, hash 0000000000000000"), 0) << ended.out;
+    EXPECT_EQ(linesWith(ended.out, "created in order"), 0) << ended.out;
+}
+
+TEST(Interrupt, CtrlCEndsABenchmarkWithTheScenesThatItMeasured) {
+    Process process({huestepProgram, "bench", "small:n=3", "pyramid:base=30", "--ticks", "100000",
+                     "--repeat", "1", "--engine", "huestep", "--threads", "1", "--json"});
+    ASSERT_TRUE(Process::until(60.0, [&] { return linesWith(process.err(), "small:n=3") > 0; }))
+        << "it does not say that the first scene is done";
     process.send(SIGINT);
-    EXPECT_EQ(process.wait(20.0), 1);
+    EXPECT_EQ(process.wait(60.0), 130);
+    EXPECT_EQ(linesWith(process.err(), "with 1 of 2 scenes measured"), 1) << process.err();
     const Json document = Json::parse(process.out(), nullptr, false);
     ASSERT_FALSE(document.is_discarded()) << process.out();
     EXPECT_EQ(document["finished"], false);
-    EXPECT_EQ(document["equal"], false);
+    ASSERT_EQ(document["results"].size(), 1u);
+    EXPECT_EQ(document["results"][0]["scene"], "small:n=3");
 }
 
 }  // namespace
