@@ -81,6 +81,7 @@ TEST(Readme, EverySceneItsCommandsNameIsBuiltIn) {
     for (const std::string& line : blocksOf("README.md", "sh")) {
         const std::vector<std::string> words = wordsOf(line);
         if (words.size() < 3 || (words[1] != "run" && words[1] != "bench")) continue;
+        if (std::filesystem::is_regular_file(root / words[2])) continue;  // a scene file
         const std::string name = words[2].substr(0, words[2].find(':'));
         EXPECT_NE(("\n" + scenes.out).find("\n" + name + " "), std::string::npos) << line;
     }
@@ -138,6 +139,8 @@ TEST(Readme, ItsCommandsWithoutANetworkRun) {
         words.erase(words.begin());
         if (words[0] != "scenes" && !ticks.contains(words[0])) continue;
         if (words[0] != "scenes") setOption(words, "--ticks", ticks.at(words[0]));
+        for (std::string& word : words)
+            if (word.starts_with("docs/")) word = (root / word).string();
         if (words[0] == "bench") setOption(words, "--repeat", "1");
         ran.insert(words[0]);
         const Ended ended = huestep(words);
@@ -147,6 +150,12 @@ TEST(Readme, ItsCommandsWithoutANetworkRun) {
         EXPECT_NE(ended.out, "") << line;
     }
     EXPECT_EQ(ran.size(), 4u);
+}
+
+TEST(Readme, ItsExampleOfASceneFileIsASceneWhoseHashesAgree) {
+    const Ended ended = huestep({"verify", (root / "docs/example_scene.json").string(), "--ticks",
+                                 "60", "--threads", "1,2", "--reorder"});
+    EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
 }
 
 TEST(Readme, ItsPicturesAndLinksLeadToFiles) {
