@@ -121,6 +121,9 @@ Result<JournalStory> loadJournal(const std::string& path, std::uint64_t from,
                                  std::optional<std::uint64_t> to) {
     // openFolder would make the folder; a reader must not.
     if (!looksLikeJournal(path)) return Error{path + ": no folder, so no journal"};
+    std::error_code wrong;
+    if (!std::filesystem::exists(path + "/" + sceneFile, wrong))
+        return Error{path + " is no journal: it has no " + sceneFile};
     Result<std::unique_ptr<protocol::LogStore>> store = protocol::openFolder(path);
     if (!store) return store.error();
     const Result<protocol::JournalContents> contents = protocol::readJournal(**store);

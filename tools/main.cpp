@@ -6,6 +6,7 @@
 #include "tools/command.h"
 #include "tools/floats.h"
 #include "tools/interrupt.h"
+#include "tools/misuse.h"
 
 namespace huestep::tools {
 
@@ -54,7 +55,7 @@ int runProgram(int count, char** words) {
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& wrong) {
-        return badUse(wrong.what() + std::string("; see huestep --help"));
+        return badUse(explainMisuse(app, wrong, {words + 1, words + count}));
     }
     catchInterrupts();
     // Who talks to others outlives them. Whoever only prints ends with its reader, as is usual.

@@ -62,7 +62,8 @@ Status fillFromFile(ServeOptions& options) {
             if (const Status taken = takeKey(file, name, node, options); !taken) return taken;
         }
     } catch (const toml::parse_error& wrong) {
-        return Error{file + ":" + std::to_string(wrong.source().begin.line) + ": " +
+        const auto line = wrong.source().begin.line;  // 0: no line was read
+        return Error{file + (line == 0 ? "" : ":" + std::to_string(line)) + ": " +
                      std::string(wrong.description())};
     }
     return Done{};

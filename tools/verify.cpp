@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
@@ -255,7 +256,10 @@ Answer verify(const VerifyOptions& options, bool threadsGiven) {
                          options.engine};
         return verifyWorlds(options, planJournal(options));
     }
+    std::error_code wrong;
     const Result<NamedScene> named = loadScene(options.source);
+    if (!named && !std::filesystem::exists(options.source, wrong))
+        return Error{named.error().message + ", nor a folder with a journal"};
     if (!named) return named.error();
     if (!peer) return verifyWorlds(options, planScene(options, *named));
     if (threadsGiven || options.restoreEvery != 0)
