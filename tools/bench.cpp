@@ -173,6 +173,12 @@ void addBench(Menu& menu) {
     CLI::App* sub = menu.add("bench", "Runs engines side by side; prints times, errors, hashes.",
                              "huestep bench pyramid tumbler --threads 1,2 --engine huestep,box2d",
                              [o] { return bench(*o); });
+    sub->footer(sub->get_footer() +
+                "\n\npsm: mean over the ticks of the least time of each among the repeats, ms a "
+                "tick; min to\n"
+                "q3 are those of the repeats' means. ratio: psm over that of huestep with as many "
+                "threads.\n"
+                "drift: energy won or lost by the end, as a share of weight times extent.");
     sub->add_option("SCENE", o->scenes, "Scenes (default: the benchmark scenes)");
     sub->add_option("--threads", o->threads, "Thread counts (default: 1,2)");
     std::string names;

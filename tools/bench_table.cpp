@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <numeric>
 
 #include "tools/bench.h"
@@ -8,12 +9,25 @@
 namespace huestep::tools {
 namespace {
 
+/// Equal decimals down a column.
+std::string fixed(double value, int decimals) {
+    char digits[64];
+    std::snprintf(digits, sizeof digits, "%.*f", decimals, value);
+    return digits;
+}
+
+std::string power(double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.2e", value);
+    return digits;
+}
+
 /// Its time over that of Huestep with as many threads, if that was measured.
 std::string ratioOf(const BenchResult& result, const std::vector<BenchResult>& all) {
     for (const BenchResult& other : all)
         if (other.engine == "huestep" && other.scene == result.scene &&
             other.threads == result.threads && other.psm() > 0.0)
-            return number(result.psm() / other.psm());
+            return fixed(result.psm() / other.psm(), 2);
     return "";
 }
 
@@ -58,11 +72,11 @@ void printBench(const std::vector<BenchResult>& results) {
                  "ratio", "drift", "penetration, m", "joint error, m", "hash"});
     for (const BenchResult& r : results)
         table.add({r.scene, r.engine, std::to_string(r.threads), std::to_string(r.ticks),
-                   number(r.psm()), number(quantile(r.repeats, 0.0)),
-                   number(quantile(r.repeats, 0.25)), number(quantile(r.repeats, 0.5)),
-                   number(quantile(r.repeats, 0.75)), ratioOf(r, results),
-                   number(r.errors.energyDrift), number(r.errors.maxPenetration),
-                   number(r.errors.maxJointError),
+                   fixed(r.psm(), 4), fixed(quantile(r.repeats, 0.0), 4),
+                   fixed(quantile(r.repeats, 0.25), 4), fixed(quantile(r.repeats, 0.5), 4),
+                   fixed(quantile(r.repeats, 0.75), 4), ratioOf(r, results),
+                   power(r.errors.energyDrift), power(r.errors.maxPenetration),
+                   power(r.errors.maxJointError),
                    hex(r.hash) + (r.sameHash ? "" : " (not in every repeat)")});
     table.print();
     for (const BenchResult& r : results)

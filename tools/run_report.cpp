@@ -118,15 +118,16 @@ void RunReport::print(const TickHash& hash, bool full) {
 }
 
 void RunReport::print() const {
+    const std::string chosen =
+        simd == "auto" ? " (" + std::string(nameOf(availableSimd().back())) + " here)" : "";
     std::printf("scene        %s on %s, %d thread%s%s\n", scene.c_str(), engine.c_str(), threads,
-                threads == 1 ? "" : "s", inside ? (", simd " + simd).c_str() : "");
+                threads == 1 ? "" : "s", inside ? (", simd " + simd + chosen).c_str() : "");
     std::printf("tick         %llu%s\n", static_cast<unsigned long long>(ticks),
                 ticks < ticksAsked ? " (stopped before the end)" : "");
     std::printf("hash         motion %s%s\n", hex(motionRoot).c_str(),
                 inside ? ("  full " + hex(inside->fullRoot)).c_str() : "");
-    std::printf("ms a tick    median %s  p99 %s\n",
-                number(tickNanoseconds.quantile(0.5) / nsPerMs).c_str(),
-                number(tickNanoseconds.quantile(0.99) / nsPerMs).c_str());
+    std::printf("ms a tick    median %.4f  p99 %.4f\n", tickNanoseconds.quantile(0.5) / nsPerMs,
+                tickNanoseconds.quantile(0.99) / nsPerMs);
     std::printf("bodies       %llu\n", static_cast<unsigned long long>(bodies));
     std::printf("contacts     %u\n", contacts);
     if (inside) printInside();
@@ -136,12 +137,15 @@ void RunReport::print() const {
 void RunReport::printInside() const {
     const RunInside& in = *inside;
     std::string stages;
-    for (std::size_t s = 0; s < stageCount; ++s)
-        stages += (s == 0 ? "" : "  ") + std::string(nameOf(static_cast<Stage>(s))) + " " +
-                  number(share(in.stageNanoseconds[s], ticks) / nsPerMs);
+    for (std::size_t s = 0; s < stageCount; ++s) {
+        if (in.stageNanoseconds[s] == 0) continue;  // had nothing to do
+        char mean[32];
+        std::snprintf(mean, sizeof mean, " %.4f", share(in.stageNanoseconds[s], ticks) / nsPerMs);
+        stages += (stages.empty() ? "" : "  ") + std::string(nameOf(static_cast<Stage>(s))) + mean;
+    }
     std::string waits;
     for (const double wait : milliseconds(in.waited)) waits += " " + number(wait);
-    std::printf("by stage, ms %s\n", stages.c_str());
+    std::printf("by stage     mean ms a tick: %s\n", stages.c_str());
     std::printf("awake        %u bodies, %u joints of %zu, %u pairs, %u contacts recycled\n",
                 in.last.awakeBodies, in.last.joints, in.jointCount, in.last.pairs,
                 in.last.recycled);

@@ -1,4 +1,5 @@
 /// `huestep scenes`: the built-in scenes.
+#include <cstdio>
 #include <memory>
 
 #include "core/scene/catalog.h"
@@ -35,18 +36,18 @@ Answer showScenes(bool json) {
         print(Json{{"scenes", scenes}});
         return Exit::Done;
     }
-    Table table({"scene", "bodies", "ticks", "parameters", "for"});
+    Table table({"scene", "bodies", "ticks", "purpose"});
+    Table parameters({"scene", "parameter", "standard", "from", "to", "meaning"});
     for (const CatalogEntry& entry : sceneCatalog()) {
-        std::string parameters;
-        for (const SceneParameter& p : entry.parameters) {
-            if (!parameters.empty()) parameters += ", ";
-            parameters += std::string(p.name) + "=" + number(p.standard) + " (" + number(p.low) +
-                          " to " + number(p.high) + ")";
-        }
         table.add({std::string(entry.name), std::to_string(bodiesOf(entry)),
-                   std::to_string(entry.ticks), parameters, std::string(entry.purpose)});
+                   std::to_string(entry.ticks), std::string(entry.purpose)});
+        for (const SceneParameter& p : entry.parameters)
+            parameters.add({std::string(entry.name), std::string(p.name), number(p.standard),
+                            number(p.low), number(p.high), std::string(p.meaning)});
     }
     table.print();
+    std::printf("\n");
+    parameters.print();
     return Exit::Done;
 }
 

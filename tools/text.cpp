@@ -16,7 +16,8 @@ std::size_t widthOf(std::string_view text) {
 }
 
 bool looksLikeNumber(std::string_view text) {
-    return !text.empty() && (text.front() == '-' || (text.front() >= '0' && text.front() <= '9'));
+    // The whole of it: a sentence may begin with a digit.
+    return !text.empty() && text.find_first_not_of("0123456789.+-e%") == std::string_view::npos;
 }
 
 }  // namespace

@@ -41,6 +41,37 @@ TEST(Scenes, EverySceneOfTheListBuildsAndSteps) {
     }
 }
 
+TEST(Scenes, TheListAlignsItsPurposesAndExplainsEveryParameter) {
+    const Ended ended = huestep({"scenes"});
+    const std::size_t column = ended.out.find("purpose");
+    ASSERT_NE(column, std::string::npos);
+    const Json document = documentOf({"scenes"});
+    for (const Json& scene : document["scenes"]) {
+        const std::size_t row =
+            ("\n" + ended.out).find("\n" + scene["name"].get<std::string>() + " ");
+        ASSERT_NE(row, std::string::npos) << scene["name"];
+        const std::string purpose = scene["purpose"];
+        EXPECT_EQ(ended.out.substr(row + column, purpose.size()), purpose);
+        for (const Json& parameter : scene["parameters"])
+            EXPECT_GE(linesWith(ended.out, parameter["meaning"]), 1) << parameter;
+    }
+}
+
+TEST(Run, NamesTheWidthThatAutoChose) {
+    const Ended ended = huestep({"run", "small:n=3", "--ticks", "3"});
+    const std::string width = after(ended.out, "simd auto (");
+    ASSERT_TRUE(width.ends_with(" here)")) << ended.out;
+    const std::string name = width.substr(0, width.find(' '));
+    EXPECT_EQ(huestep({"run", "small:n=3", "--ticks", "3", "--simd", name}).status, 0) << name;
+    EXPECT_EQ(linesWith(ended.out, "mean ms a tick: "), 1) << ended.out;
+}
+
+TEST(Bench, ItsHelpExplainsItsColumns) {
+    const Ended help = huestep({"bench", "--help"});
+    for (const char* column : {"psm: ", "ratio: ", "drift: "})
+        EXPECT_EQ(linesWith(help.out, column), 1) << column << help.out;
+}
+
 TEST(Run, SaysTheSameHashForEveryThreadCountAndWidth) {
     const Json one = documentOf({"run", "pyramid:base=12", "--ticks", "60", "--simd", "scalar"});
     const Json many = documentOf({"run", "pyramid:base=12", "--ticks", "60", "--threads", "3"});
