@@ -12,9 +12,10 @@ constexpr int lowestLevel = -7;   // cells of 1/128 m
 constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits, as speeds have a cap
 constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
-constexpr std::uint32_t joinGrain = 256;
-constexpr std::uint32_t sparseLevel = 16;  // entries: a level of so few is read whole
-constexpr float farthestTravel = 1000.0f;  // m: no fat box may outgrow the widest cell
+constexpr std::uint32_t joinGrain = 128;
+constexpr std::uint32_t joinSerially = 1024;  // entries: fewer are joined before a team is awake
+constexpr std::uint32_t sparseLevel = 16;     // entries: a level of so few is read whole
+constexpr float farthestTravel = 1000.0f;     // m: no fat box may outgrow the widest cell
 
 float cellSize(int level) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(level + 127) << 23);
@@ -291,7 +292,7 @@ void BroadPhase::joinBlock(std::uint32_t begin, std::uint32_t end,
 void BroadPhase::joinAll(std::span<const ShapeProxy> proxies, std::span<const ShapePair> forbidden,
                          Executor* executor, std::vector<ShapePair>& out) {
     const auto count = static_cast<std::uint32_t>(m_entries.size());
-    if (executor == nullptr || executor->threads() == 1 || count < 2048) {
+    if (executor == nullptr || executor->threads() == 1 || count < joinSerially) {
         joinBlock(0, count, proxies, forbidden, out);
     } else {
         std::vector<std::vector<ShapePair>> parts((count + joinGrain - 1) / joinGrain);
