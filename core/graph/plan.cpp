@@ -10,9 +10,9 @@ namespace {
 /// Working memory of one call.
 struct Builder {
     Plan& plan;
-    std::span<const std::uint8_t> moves;  // by body
     std::uint32_t batchSize;
 
+    std::vector<std::uint8_t> moves;           // by body: whether it is awake
     std::vector<std::uint32_t> constraintsOf;  // island representative → constraints
     std::vector<std::uint32_t> batchOf;        // island representative → batch
     std::vector<std::uint32_t> linkOrder;      // links by batch, key order within
@@ -211,7 +211,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
 }  // namespace
 
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, std::span<const std::uint8_t> moves,
+              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount,
               std::uint32_t batchSize) {
     plan.links = std::move(links);
     plan.jointLinks = jointLinks;
@@ -226,11 +226,13 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.colourOfLink.assign(plan.links.size(), 0);
     plan.colours = plan.overflow = 0;
 
-    Builder builder{plan, moves, batchSize, {}, {}, {}, {}, {}};
+    Builder builder{plan, batchSize, {}, {}, {}, {}, {}, {}};
+    builder.moves.assign(bodyCount, 0);
+    for (const std::uint32_t body : plan.awake) builder.moves[body] = 1;
     builder.findAllIslands();
     builder.packBatches();
     builder.sortLinks();
-    builder.placeOf.assign(moves.size(), fixedWorld);
+    builder.placeOf.assign(bodyCount, fixedWorld);
     plan.bodyOfPlace.assign(1, none);
     plan.hasContact.assign(1, 0);
 

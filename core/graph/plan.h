@@ -67,11 +67,10 @@ struct Plan {
     std::uint32_t overflow = 0;  ///< constraints in overflow
 };
 
-/// Makes the plan. `links` and `awake` are moved in; `moves`: by body, whether it is awake and
-/// dynamic; others are read by the solver and never written; `batchSize` may differ in tests only:
-/// no result depends on it.
+/// Makes the plan. `links` and `awake` are moved in; bodies that are not awake are read by the
+/// solver and never written; `batchSize` may differ in tests only: no result depends on it.
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, std::span<const std::uint8_t> moves,
+              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount,
               std::uint32_t batchSize = standardBatchSize);
 
 }  // namespace huestep

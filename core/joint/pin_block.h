@@ -16,7 +16,8 @@ struct alignas(64) PinBlock {
     using Row = float[blockLanes];
     BodyPlace bodyA[blockLanes];
     BodyPlace bodyB[blockLanes];
-    Row mA, iA, mB, iB;      ///< inverse masses, 1/kg, and inertias, 1/(kg·m²)
+    Row inverseMassA, inverseInertiaA;  ///< 1/kg, 1/(kg·m²)
+    Row inverseMassB, inverseInertiaB;
     Row anchorAx, anchorAy;  ///< m, from A's centre, world axes, at the start of the step
     Row anchorBx, anchorBy;
     Row centersX, centersY;  ///< m, cB − cA at the start

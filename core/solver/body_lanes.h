@@ -1,4 +1,4 @@
-/// Gather and scatter of solver bodies into lanes.
+/// Gather and scatter of solver bodies into lanes, and what a constraint does to two of them.
 #pragma once
 
 #include "core/math/lanes.h"
@@ -14,6 +14,11 @@ struct VelocityLanes {
 template <int W>
 struct DeltaLanes {
     LaneF<W> dx, dy, dc, ds;
+};
+
+template <int W>
+struct PoseLanes {
+    LaneF<W> x, y, c, s;
 };
 
 using F4 = LaneF<4>;
@@ -90,45 +95,40 @@ HUESTEP_INLINE void gather(const Record* records, const BodyPlace* place, int of
     c3 = join(l3, h3);
 }
 
+/// The same for any number of lanes.
+template <int W, class Record>
+HUESTEP_INLINE void gatherFour(const Record* records, const BodyPlace* place, int offset,
+                               LaneF<W>& c0, LaneF<W>& c1, LaneF<W>& c2, LaneF<W>& c3) {
+    if constexpr (W == 1) {
+        const float* row = floatsOf(records[readPlace(place[0])]) + offset;
+        c0 = row[0];
+        c1 = row[1];
+        c2 = row[2];
+        c3 = row[3];
+    } else {
+        gather(records, place, offset, c0, c1, c2, c3);
+    }
+}
+
 template <int W>
 HUESTEP_INLINE VelocityLanes<W> gatherVelocities(const SolverBody* bodies, const BodyPlace* place) {
     VelocityLanes<W> v;
-    if constexpr (W == 1) {
-        const SolverBody& body = bodies[readPlace(place[0])];
-        v = {body.vx, body.vy, body.w};
-    } else {
-        LaneF<W> unused;
-        gather(bodies, place, 0, v.vx, v.vy, v.w, unused);
-    }
+    LaneF<W> unused;
+    gatherFour<W>(bodies, place, 0, v.vx, v.vy, v.w, unused);
     return v;
 }
 
 template <int W>
 HUESTEP_INLINE DeltaLanes<W> gatherDeltas(const SolverBody* bodies, const BodyPlace* place) {
     DeltaLanes<W> d;
-    if constexpr (W == 1) {
-        const SolverBody& body = bodies[readPlace(place[0])];
-        d = {body.dx, body.dy, body.dc, body.ds};
-    } else {
-        gather(bodies, place, 4, d.dx, d.dy, d.dc, d.ds);
-    }
+    gatherFour<W>(bodies, place, 4, d.dx, d.dy, d.dc, d.ds);
     return d;
 }
 
 template <int W>
-struct PoseLanes {
-    LaneF<W> x, y, c, s;
-};
-
-template <int W>
 HUESTEP_INLINE PoseLanes<W> gatherPoses(const SolverPose* poses, const BodyPlace* place) {
     PoseLanes<W> p;
-    if constexpr (W == 1) {
-        const SolverPose& pose = poses[readPlace(place[0])];
-        p = {pose.x, pose.y, pose.c, pose.s};
-    } else {
-        gather(poses, place, 0, p.x, p.y, p.c, p.s);
-    }
+    gatherFour<W>(poses, place, 0, p.x, p.y, p.c, p.s);
     return p;
 }
 
@@ -205,6 +205,61 @@ HUESTEP_INLINE void scatterVelocities(SolverBody* bodies, SolverBody& trash, con
     } else {
         scatter(bodies, trash, place, v.vx, v.vy, v.w);
     }
+}
+
+/// The two bodies of W constraints, in registers between gather and scatter.
+template <int W>
+struct PairLanes {
+    VelocityLanes<W> a, b;
+    LaneF<W> inverseMassA, inverseInertiaA, inverseMassB, inverseInertiaB;
+
+    template <class Block>
+    HUESTEP_INLINE PairLanes(const SolverBody* bodies, const Block& block, int lane)
+        : a(gatherVelocities<W>(bodies, block.bodyA + lane)),
+          b(gatherVelocities<W>(bodies, block.bodyB + lane)),
+          inverseMassA(loadLanes<W>(block.inverseMassA + lane)),
+          inverseInertiaA(loadLanes<W>(block.inverseInertiaA + lane)),
+          inverseMassB(loadLanes<W>(block.inverseMassB + lane)),
+          inverseInertiaB(loadLanes<W>(block.inverseInertiaB + lane)) {}
+
+    template <class Block>
+    HUESTEP_INLINE void store(SolverBody* bodies, const Block& block, int lane) const {
+        SolverBody trash;
+        scatterVelocities<W>(bodies, trash, block.bodyA + lane, a);
+        scatterVelocities<W>(bodies, trash, block.bodyB + lane, b);
+    }
+};
+
+/// Where a point's two anchors are, from the centres of A and B.
+template <int W>
+struct Anchors {
+    LaneF<W> ax, ay, bx, by;
+};
+
+template <int W, class Rows>
+HUESTEP_INLINE Anchors<W> anchorsOf(const Rows& rows, int lane) {
+    return {loadLanes<W>(rows.anchorAx + lane), loadLanes<W>(rows.anchorAy + lane),
+            loadLanes<W>(rows.anchorBx + lane), loadLanes<W>(rows.anchorBy + lane)};
+}
+
+/// Relative velocity of the anchors, B less A.
+template <int W>
+HUESTEP_INLINE void relativeVelocity(const PairLanes<W>& pair, const Anchors<W>& r, LaneF<W>& x,
+                                     LaneF<W>& y) {
+    x = (pair.b.vx - pair.b.w * r.by) - (pair.a.vx - pair.a.w * r.ay);
+    y = (pair.b.vy + pair.b.w * r.bx) - (pair.a.vy + pair.a.w * r.ax);
+}
+
+/// The impulse (px, py) on B at its anchor, and its opposite on A.
+template <int W>
+HUESTEP_INLINE void applyImpulse(PairLanes<W>& pair, const Anchors<W>& r, const LaneF<W>& px,
+                                 const LaneF<W>& py) {
+    pair.a.vx = pair.a.vx - pair.inverseMassA * px;
+    pair.a.vy = pair.a.vy - pair.inverseMassA * py;
+    pair.a.w = pair.a.w - pair.inverseInertiaA * (r.ax * py - r.ay * px);
+    pair.b.vx = pair.b.vx + pair.inverseMassB * px;
+    pair.b.vy = pair.b.vy + pair.inverseMassB * py;
+    pair.b.w = pair.b.w + pair.inverseInertiaB * (r.bx * py - r.by * px);
 }
 
 }  // namespace huestep

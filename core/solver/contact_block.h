@@ -106,7 +106,7 @@ struct ContactPass {
 using ContactKernel = void (*)(SolverBody* bodies, ContactBlock* blocks, std::uint32_t count,
                                const ContactPass& pass);
 
-/// Brings `blocks` whole blocks to the start of a step: separations and approach speeds from the
+/// Brings `count` whole blocks to the start of a step: separations and approach speeds from the
 /// bodies' poses and velocities, of all 16 lanes. Everything else of a row holds as long as its
 /// manifold does.
 using ContactRefresh = void (*)(const SolverBody* bodies, const SolverPose* poses,

@@ -12,60 +12,16 @@ namespace huestep {
 
 namespace {
 
-/// The two bodies of W contacts, in registers between gather and scatter.
+/// The two bodies of W contacts and the normal from A to B.
 template <int W>
-struct Pair {
-    VelocityLanes<W> a, b;
-    LaneF<W> inverseMassA, inverseInertiaA, inverseMassB, inverseInertiaB;
+struct Pair : PairLanes<W> {
     LaneF<W> nx, ny;
 
     HUESTEP_INLINE Pair(const SolverBody* bodies, const ContactBlock& block, int lane)
-        : a(gatherVelocities<W>(bodies, block.bodyA + lane)),
-          b(gatherVelocities<W>(bodies, block.bodyB + lane)),
-          inverseMassA(loadLanes<W>(block.inverseMassA + lane)),
-          inverseInertiaA(loadLanes<W>(block.inverseInertiaA + lane)),
-          inverseMassB(loadLanes<W>(block.inverseMassB + lane)),
-          inverseInertiaB(loadLanes<W>(block.inverseInertiaB + lane)),
+        : PairLanes<W>(bodies, block, lane),
           nx(loadLanes<W>(block.normalX + lane)),
           ny(loadLanes<W>(block.normalY + lane)) {}
-
-    HUESTEP_INLINE void store(SolverBody* bodies, const ContactBlock& block, int lane) const {
-        SolverBody trash;
-        scatterVelocities<W>(bodies, trash, block.bodyA + lane, a);
-        scatterVelocities<W>(bodies, trash, block.bodyB + lane, b);
-    }
 };
-
-/// Where a point's two anchors are, from the centres of A and B.
-template <int W>
-struct Anchors {
-    LaneF<W> ax, ay, bx, by;
-    HUESTEP_INLINE Anchors(const ContactPointRows& p, int lane)
-        : ax(loadLanes<W>(p.anchorAx + lane)),
-          ay(loadLanes<W>(p.anchorAy + lane)),
-          bx(loadLanes<W>(p.anchorBx + lane)),
-          by(loadLanes<W>(p.anchorBy + lane)) {}
-};
-
-/// Relative velocity of the anchors, B less A.
-template <int W>
-HUESTEP_INLINE void relativeVelocity(const Pair<W>& pair, const Anchors<W>& r, LaneF<W>& x,
-                                     LaneF<W>& y) {
-    x = (pair.b.vx - pair.b.w * r.by) - (pair.a.vx - pair.a.w * r.ay);
-    y = (pair.b.vy + pair.b.w * r.bx) - (pair.a.vy + pair.a.w * r.ax);
-}
-
-/// The impulse (px, py) on B at its anchor, and its opposite on A.
-template <int W>
-HUESTEP_INLINE void applyImpulse(Pair<W>& pair, const Anchors<W>& r, const LaneF<W>& px,
-                                 const LaneF<W>& py) {
-    pair.a.vx = pair.a.vx - pair.inverseMassA * px;
-    pair.a.vy = pair.a.vy - pair.inverseMassA * py;
-    pair.a.w = pair.a.w - pair.inverseInertiaA * (r.ax * py - r.ay * px);
-    pair.b.vx = pair.b.vx + pair.inverseMassB * px;
-    pair.b.vy = pair.b.vy + pair.inverseMassB * py;
-    pair.b.w = pair.b.w + pair.inverseInertiaB * (r.bx * py - r.by * px);
-}
 
 /// How far a body has turned since its manifold was made: q₀⁻¹ q.
 template <int W>
@@ -88,7 +44,7 @@ HUESTEP_INLINE void refreshLanes(const SolverBody* bodies, const SolverPose* pos
     turnedSince<W>(loadLanes<W>(block.cosineA + lane), loadLanes<W>(block.sineA + lane), a, cA, sA);
     turnedSince<W>(loadLanes<W>(block.cosineB + lane), loadLanes<W>(block.sineB + lane), b, cB, sB);
     for (ContactPointRows& p : block.points) {
-        const Anchors<W> r(p, lane);
+        const Anchors<W> r = anchorsOf<W>(p, lane);
         const LaneF<W> x = (b.x - a.x) + ((cB * r.bx - sB * r.by) - (cA * r.ax - sA * r.ay));
         const LaneF<W> y = (b.y - a.y) + ((sB * r.bx + cB * r.by) - (sA * r.ax + cA * r.ay));
         const LaneF<W> met = pair.nx * (r.bx - r.ax) + pair.ny * (r.by - r.ay);
@@ -106,7 +62,7 @@ HUESTEP_INLINE void warmStartLanes(SolverBody* bodies, ContactBlock& block, int 
                                    const ContactPass& pass) {
     Pair<W> pair(bodies, block, lane);
     for (const ContactPointRows& p : block.points) {
-        const Anchors<W> r(p, lane);
+        const Anchors<W> r = anchorsOf<W>(p, lane);
         const LaneF<W> normal = loadLanes<W>(p.normalImpulse + lane);
         const LaneF<W> tangent = loadLanes<W>(p.tangentImpulse + lane);
         // The tangent is the normal turned right: (ny, −nx).
@@ -139,7 +95,7 @@ HUESTEP_INLINE void solveNormals(Pair<W>& pair, const DeltaLanes<W>& a, const De
     const LaneF<W> zero = splat<W>(0.0f);
     const LaneF<W> one = splat<W>(1.0f);
     for (ContactPointRows& p : block.points) {
-        const Anchors<W> r(p, lane);
+        const Anchors<W> r = anchorsOf<W>(p, lane);
         const LaneF<W> s = separationNow<W>(pair, r, a, b, loadLanes<W>(p.separation + lane));
         const auto apart = s > zero;
         LaneF<W> x, y;
@@ -177,7 +133,7 @@ HUESTEP_INLINE void solveFriction(Pair<W>& pair, ContactBlock& block, int lane,
     LaneF<W> surface = zero;
     if (pass.features.tangentSpeed) surface = loadLanes<W>(block.tangentSpeed + lane);
     for (ContactPointRows& p : block.points) {
-        const Anchors<W> r(p, lane);
+        const Anchors<W> r = anchorsOf<W>(p, lane);
         LaneF<W> x, y;
         relativeVelocity<W>(pair, r, x, y);
         const LaneF<W> vt = (x * pair.ny - y * pair.nx) + surface;
@@ -237,7 +193,7 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
     const LaneF<W> zero = splat<W>(0.0f);
     const LaneF<W> e = loadLanes<W>(block.restitution + lane);
     for (ContactPointRows& p : block.points) {
-        const Anchors<W> r(p, lane);
+        const Anchors<W> r = anchorsOf<W>(p, lane);
         const LaneF<W> approach = loadLanes<W>(p.approach + lane);
         const LaneF<W> pushed = loadLanes<W>(p.maxNormalImpulse + lane);
         LaneF<W> x, y;

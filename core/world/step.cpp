@@ -151,16 +151,14 @@ void World::Data::updatePlan() {
         if (moves(c.bodyA) || moves(c.bodyB)) links.push_back({c.bodyA, c.bodyB, i});
     }
     std::vector<std::uint32_t> awake;
-    std::vector<std::uint8_t> moving(state.bodies.size(), 0);
     for (std::uint32_t body = 0; body < state.bodies.size(); ++body) {
-        if (!moves(body)) continue;
-        moving[body] = 1;
-        awake.push_back(body);
+        if (moves(body)) awake.push_back(body);
     }
     Plan& plan = acc.plan;
     if (!acc.planValid || jointLinks != plan.jointLinks || links != plan.links ||
         awake != plan.awake) {
-        makePlan(plan, std::move(links), jointLinks, std::move(awake), moving);
+        makePlan(plan, std::move(links), jointLinks, std::move(awake),
+                 static_cast<std::uint32_t>(state.bodies.size()));
         acc.planValid = true;
         acc.rowsHold = false;
     }

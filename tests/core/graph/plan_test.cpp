@@ -46,7 +46,7 @@ Case randomCase(Random& random) {
 Plan planOf(const Case& c, std::uint32_t batchSize) {
     Plan plan;
     makePlan(plan, std::vector<Link>(c.links), c.jointLinks, std::vector<std::uint32_t>(c.awake),
-             c.moves, batchSize);
+             static_cast<std::uint32_t>(c.moves.size()), batchSize);
     return plan;
 }
 
