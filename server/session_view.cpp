@@ -48,12 +48,11 @@ void addJoints(const World& world, std::size_t most, protocol::View& view) {
     const auto motions = world.motions();
     for (const JointInfo& joint : world.joints()) {
         if (view.joints.size() == most) return;
-        const std::optional<std::uint32_t> a = world.find(joint.bodyA);
+        const bool mouse = joint.kind() == JointKind::Mouse;  // it has no body A
+        const std::optional<std::uint32_t> a = world.find(mouse ? joint.bodyB : joint.bodyA);
         const std::optional<std::uint32_t> b = world.find(joint.bodyB);
         if (!a || !b) continue;
-        const Vec2 first = joint.kind() == JointKind::Mouse
-                               ? joint.target
-                               : transform(motions[*a].pose(), joint.anchorA);
+        const Vec2 first = mouse ? joint.target : transform(motions[*a].pose(), joint.anchorA);
         view.joints.push_back({first, transform(motions[*b].pose(), joint.anchorB)});
     }
 }

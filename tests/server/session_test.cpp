@@ -39,6 +39,21 @@ struct Bench {
     Session session;
 };
 
+TEST(Session, AViewShowsAHandFromItsTargetToTheBodyItHolds) {
+    Bench bench;
+    const PlayerId player = bench.seat();
+    const BodyId held = 2;
+    const Vec2 at = bench.session.world().motions()[*bench.session.world().find(held)].position;
+    bench.session.queue(player, {0, 1, Grab{held, at, {1.5f, 4.0f}}});
+    bench.close();
+    const protocol::View view = bench.session.view(false);
+    ASSERT_EQ(view.joints.size(), 1u);
+    EXPECT_EQ(view.joints[0].a, (Vec2{1.5f, 4.0f}));
+    const Vec2 now = bench.session.world().motions()[*bench.session.world().find(held)].position;
+    EXPECT_NEAR(view.joints[0].b.x, now.x, 0.05f);
+    EXPECT_NEAR(view.joints[0].b.y, now.y, 0.05f);
+}
+
 TEST(Session, AFrameHasItsCommandsInKeyOrderAndTheRootItIsAppliedTo) {
     Bench bench;
     const PlayerId one = bench.seat(), two = bench.seat();
