@@ -22,6 +22,7 @@ std::optional<Ballistic> Ballistic::find(const World& start) {
         if (!body.dynamic()) continue;
         if (body.linearDamping > 0.0f) return std::nullopt;
         const BodyMotion& motion = start.motions()[i];
+        if (motion.asleep()) return std::nullopt;  // something holds it, or it would fall
         b.m_bodies.push_back(
             {i, inDouble(motion.position), inDouble(motion.velocity),
              static_cast<double>(body.gravityScale) * inDouble(start.info().gravity)});

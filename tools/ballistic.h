@@ -19,7 +19,7 @@ struct BallisticResult {
 /// reference to a world after a call.
 class Ballistic {
  public:
-    /// None if the scene has a joint, a damped dynamic body or no dynamic body.
+    /// None if the scene has a joint, a damped or a sleeping dynamic body, or no dynamic body.
     static std::optional<Ballistic> find(const World& start);
 
     /// After each step; `touching`: whether there is any contact, which ends the flight.
