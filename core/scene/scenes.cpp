@@ -19,6 +19,28 @@ BodyDef bodyOf(BodyType type, Vec2 position, const ShapeDef& shape) {
     return body;
 }
 
+void addStatic(Scene& scene, std::span<const ShapeDef> shapes) {
+    while (!shapes.empty()) {
+        const std::size_t some = std::min<std::size_t>(shapes.size(), maxShapesPerBody);
+        BodyDef body;
+        body.shapes.assign(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(some));
+        add(scene, body);
+        shapes = shapes.subspan(some);
+    }
+}
+
+void addTrough(std::vector<ShapeDef>& shapes, std::uint32_t halfWidth, std::uint32_t height) {
+    const auto end = static_cast<float>(halfWidth);
+    for (std::uint32_t i = 0; i <= 2 * halfWidth; ++i) {
+        shapes.push_back(ShapeDef::box(0.55f, 0.5f, {static_cast<float>(i) - end, 0.0f}));
+    }
+    for (const float x : {-end, end}) {
+        for (std::uint32_t i = 0; i < height; ++i) {
+            shapes.push_back(ShapeDef::box(0.5f, 0.55f, {x, static_cast<float>(i) + 1.0f}));
+        }
+    }
+}
+
 JointDef hingeAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point) {
     const BodyDef& a = scene.bodies[bodyA];
     const BodyDef& b = scene.bodies[bodyB];

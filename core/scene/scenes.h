@@ -18,6 +18,9 @@ Scene pyramid(Values values);
 Scene manyPyramids(Values values);
 Scene jointGrid(Values values);
 Scene tumbler(Values values);
+Scene smash(Values values);
+Scene compounds(Values values);
+Scene washer(Values values);
 Scene small(Values values);
 
 // Accuracy: closed forms or reference solutions are known.
@@ -37,6 +40,13 @@ std::uint32_t add(Scene& scene, const BodyDef& body);
 
 /// A body of one shape.
 BodyDef bodyOf(BodyType type, Vec2 position, const ShapeDef& shape);
+
+/// Adds static bodies at the origin that hold the shapes, as many to a body as it may have.
+void addStatic(Scene& scene, std::span<const ShapeDef> shapes);
+
+/// Boxes, a metre each and a little longer so that no gap is between them, that make a floor from
+/// −`halfWidth` to `halfWidth` at y = 0 and a wall of `height` boxes upon either end.
+void addTrough(std::vector<ShapeDef>& shapes, std::uint32_t halfWidth, std::uint32_t height);
 
 /// A revolute joint of two bodies of the scene about a point of the world; its coordinate is 0 as
 /// the bodies stand, and their shapes do not touch each other.

@@ -21,6 +21,33 @@ void addPyramid(Scene& scene, std::uint32_t base, float half, float left, float 
     }
 }
 
+/// A grid of `columns` × `rows` boxes of half size `half`, column by column, `pitch` apart; `first`
+/// is the place of the lowest box of the first column.
+void addGrid(Scene& scene, std::uint32_t columns, std::uint32_t rows, float half, Vec2 first,
+             float pitch, bool asleep = false) {
+    BodyDef box = bodyOf(BodyType::Dynamic, first, ShapeDef::box(half, half));
+    box.asleep = asleep;
+    for (std::uint32_t column = 0; column < columns; ++column) {
+        for (std::uint32_t row = 0; row < rows; ++row) {
+            box.position =
+                first + pitch * Vec2{static_cast<float>(column), static_cast<float>(row)};
+            add(scene, box);
+        }
+    }
+}
+
+/// A piece of a ring about the origin between two radii, from one direction to another that is
+/// less than half a turn further counter-clockwise.
+ShapeDef ringPiece(float inner, float outer, double from, double to) {
+    const auto at = [](float radius, double angle) {
+        const RotationT<double> q = rotationOf(angle);
+        return radius * Vec2{static_cast<float>(q.c), static_cast<float>(q.s)};
+    };
+    const std::array<Vec2, 4> corners{at(inner, from), at(outer, from), at(outer, to),
+                                      at(inner, to)};
+    return ShapeDef::polygon(corners);
+}
+
 }  // namespace
 
 Scene pyramid(Values values) {
@@ -136,6 +163,74 @@ Scene small(Values values) {
     const float top = static_cast<float>((boxes + 2) / 3);
     const ShapeDef disc = ShapeDef::circle({}, 0.5f);
     add(scene, bodyOf(BodyType::Dynamic, {0.25f, top + 3.0f}, disc));
+    return scene;
+}
+
+Scene smash(Values values) {
+    const std::uint32_t columns = count(values[0]);
+    const std::uint32_t rows = count(values[1]);
+    Scene scene;
+    scene.gravity = {};
+    BodyDef ram = bodyOf(BodyType::Dynamic, {-20.0f, 0.0f}, ShapeDef::box(4.0f, 4.0f));
+    ram.velocity = {40.0f, 0.0f};
+    ram.shapes[0].density = 8.0f;
+    add(scene, ram);
+    const float half = 0.2f;
+    const float pitch = 2.0f * half;
+    addGrid(scene, columns, rows, half, {30.0f, -0.5f * pitch * static_cast<float>(rows)}, pitch,
+            true);
+    fitLimits(scene);
+    return scene;
+}
+
+Scene compounds(Values values) {
+    const std::uint32_t columns = count(values[0]);
+    const std::uint32_t rows = count(values[1]);
+    Scene scene;
+    std::vector<ShapeDef> ground;
+    addTrough(ground, 40, 100);
+    ground.push_back(ShapeDef::segment({-800.0f, -80.0f}, {800.0f, -80.0f}));
+    addStatic(scene, ground);
+    BodyDef body;
+    body.type = BodyType::Dynamic;
+    const std::array<Vec2, 3> left{Vec2{-1.0f, 0.0f}, Vec2{0.5f, 1.0f}, Vec2{0.0f, 2.0f}};
+    const std::array<Vec2, 3> right{Vec2{1.0f, 0.0f}, Vec2{0.0f, 2.0f}, Vec2{-0.5f, 1.0f}};
+    body.shapes = {ShapeDef::polygon(left), ShapeDef::polygon(right)};
+    for (ShapeDef& triangle : body.shapes) triangle.material.friction = 0.5f;
+    float side = 0.25f;  // every other body stands half a metre further left
+    for (std::uint32_t column = 0; column < columns; ++column) {
+        const float x = 2.0f * static_cast<float>(column) - (static_cast<float>(columns) - 1.0f);
+        for (std::uint32_t row = 0; row < rows; ++row) {
+            body.position = {x + side, 2.25f * static_cast<float>(row) + 5.575f};
+            side = -side;
+            add(scene, body);
+        }
+    }
+    fitLimits(scene);
+    return scene;
+}
+
+Scene washer(Values values) {
+    const std::uint32_t side = count(values[0]);
+    Scene scene;
+    BodyDef ring;
+    ring.type = BodyType::Kinematic;
+    ring.position = {0.0f, 10.0f};
+    ring.velocity = {0.001f, -0.002f};
+    ring.angularVelocity = static_cast<float>(25.0 * pi / 180.0);
+    const int pieces = 36;
+    const double turn = 2.0 * pi / pieces;
+    const double overlap = 0.1 * turn;  // on either side, so that no corner looks out of the ring
+    for (int i = 0; i < pieces; ++i) {
+        const double from = turn * i;
+        ring.shapes.push_back(ringPiece(16.0f, 18.0f, from - overlap, from + turn + overlap));
+        if (i % 9 == 0) ring.shapes.push_back(ringPiece(14.0f, 16.0f, from, from + turn));
+    }
+    add(scene, ring);
+    const float half = 0.1f;
+    const float low = -1.1f * half * static_cast<float>(side);
+    addGrid(scene, side, side, half, {low, low + 10.0f}, 2.1f * half);
+    fitLimits(scene);
     return scene;
 }
 

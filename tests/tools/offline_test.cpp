@@ -113,6 +113,14 @@ TEST(Run, MeasuresFreeFlightAgainstItsParabola) {
     EXPECT_NEAR(peer["accuracy"]["ballistic"]["max_error_m"].get<double>(), 10.0 / 120.0, 1e-3);
 }
 
+TEST(Run, SeesNoFreeFlightWhereBodiesSleepAtTheStart) {
+    for (const char* engine : {"huestep", "box2d"}) {
+        const Json run = documentOf(
+            {"run", "smash:columns=1,rows=1", "--ticks", "30", "--engine", std::string(engine)});
+        EXPECT_FALSE(run["accuracy"].contains("ballistic")) << engine;
+    }
+}
+
 TEST(Verify, FindsASmallWorldEqualInEveryOrderAfterNoiseAndRestores) {
     const Json document = documentOf({"verify", "mixed", "--ticks", "90", "--threads", "1,2",
                                       "--restore-every", "7", "--reorder"});
@@ -127,10 +135,13 @@ TEST(Verify, FindsASmallWorldEqualInEveryOrderAfterNoiseAndRestores) {
 
 TEST(Verify, FindsEverySceneOfTheCatalogueEqualInEveryOrderAndAfterNoise) {
     // Large scenes in small: what is tried is their kinds of bodies and joints.
-    const std::map<std::string, std::string> smaller = {{"joint_grid", "joint_grid:n=8"},
+    const std::map<std::string, std::string> smaller = {{"compounds", "compounds:columns=3,rows=3"},
+                                                        {"joint_grid", "joint_grid:n=8"},
                                                         {"many_pyramids", "many_pyramids:rows=2"},
                                                         {"pyramid", "pyramid:base=8"},
-                                                        {"tumbler", "tumbler:count=3"}};
+                                                        {"smash", "smash:columns=4,rows=4"},
+                                                        {"tumbler", "tumbler:count=3"},
+                                                        {"washer", "washer:count=5"}};
     const Json scenes = documentOf({"scenes"});
     ASSERT_GE(scenes["scenes"].size(), 8u);
     for (const Json& scene : scenes["scenes"]) {

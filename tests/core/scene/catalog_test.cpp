@@ -115,6 +115,69 @@ TEST(Catalog, TumblerHas2025BoxesInsideADrivenDrum) {
     }
 }
 
+TEST(Catalog, SmashHas9600SleepingBoxesThatTouchAndABoxThatFliesAtThem) {
+    const Scene scene = sceneOf("smash");
+    EXPECT_EQ(scene.gravity, Vec2{});
+    ASSERT_EQ(countOf(scene, BodyType::Dynamic), 9'601u);
+    EXPECT_EQ(scene.bodies.size(), 9'601u);
+    const BodyDef& ram = scene.bodies[0];
+    EXPECT_EQ(ram.position, (Vec2{-20.0f, 0.0f}));
+    EXPECT_EQ(ram.velocity, (Vec2{40.0f, 0.0f}));
+    EXPECT_EQ(ram.shapes[0].vertices[2], (Vec2{4.0f, 4.0f}));
+    EXPECT_EQ(ram.shapes[0].density, 8.0f);
+    for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+        const auto column = static_cast<double>((i - 1) / 80);
+        const auto row = static_cast<double>((i - 1) % 80);
+        EXPECT_TRUE(scene.bodies[i].asleep);
+        EXPECT_NEAR(static_cast<double>(scene.bodies[i].position.x), 30.0 + 0.4 * column, 1e-5);
+        EXPECT_NEAR(static_cast<double>(scene.bodies[i].position.y), 0.4 * row - 16.0, 1e-5);
+    }
+}
+
+TEST(Catalog, CompoundsHas3000BodiesOfTwoTrianglesAboveATrough) {
+    const Scene scene = sceneOf("compounds");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 3'000u);
+    std::size_t ground = 0;
+    for (const BodyDef& body : scene.bodies) {
+        if (body.type == BodyType::Static) {
+            ground += body.shapes.size();
+            continue;
+        }
+        ASSERT_EQ(body.shapes.size(), 2u);
+        EXPECT_LT(std::abs(body.position.x), 20.0f) << "well between the walls";
+        for (const ShapeDef& triangle : body.shapes) {
+            EXPECT_EQ(triangle.vertexCount, 3);
+            EXPECT_EQ(triangle.material.friction, 0.5f);
+        }
+    }
+    EXPECT_EQ(ground, 81u + 2u * 100u + 1u) << "floor, walls, and a segment far below";
+    const BodyDef& last = scene.bodies.back();
+    EXPECT_NEAR(last.position.x, 18.75f, 1e-5f);
+    EXPECT_NEAR(last.position.y, 149 * 2.25f + 5.575f, 1e-4f);
+}
+
+TEST(Catalog, WasherHas8100BoxesInsideARingOf36PiecesWithFourPaddles) {
+    const Scene scene = sceneOf("washer");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 8'100u);
+    ASSERT_EQ(countOf(scene, BodyType::Kinematic), 1u);
+    const BodyDef& ring = scene.bodies[0];
+    EXPECT_EQ(ring.velocity, (Vec2{0.001f, -0.002f}));
+    EXPECT_FLOAT_EQ(ring.angularVelocity, 0.43633231f);
+    ASSERT_EQ(ring.shapes.size(), 40u);
+    std::size_t paddles = 0;
+    for (const ShapeDef& piece : ring.shapes) {
+        float least = 1e9f;
+        for (std::size_t v = 0; v < 4; ++v) least = std::min(least, length(piece.vertices[v]));
+        if (least < 15.0f) ++paddles;
+        EXPECT_NEAR(least, least < 15.0f ? 14.0f : 16.0f, 1e-5f);
+        EXPECT_NEAR(length(piece.vertices[1]), least + 2.0f, 1e-5f);
+    }
+    EXPECT_EQ(paddles, 4u);
+    for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+        EXPECT_LT(length(scene.bodies[i].position - ring.position), 14.0f + 0.1f) << i;
+    }
+}
+
 TEST(Catalog, SmallHasThreeColumnsOf40BoxesAndADisc) {
     const Scene scene = sceneOf("small");
     EXPECT_EQ(countOf(scene, BodyType::Dynamic), 41u);
@@ -207,8 +270,10 @@ TEST(Catalog, ReadsParametersInAnyOrderAndFractionsWhereTheyMakeSense) {
 TEST(Catalog, NamesWhatIsWrongAndWhatThereIsInstead) {
     EXPECT_EQ(
         sentenceFor("pyrmaid"),
-        "there is no scene 'pyrmaid'; there are ballistic, chain, double_pendulum, hinges, "
-        "joint_grid, many_pyramids, mixed, pendulum, pyramid, sandbox, small, stack, tumbler");
+        "there is no scene 'pyrmaid'; there are ballistic, chain, compounds, double_pendulum, "
+        "hinges, "
+        "joint_grid, many_pyramids, mixed, pendulum, pyramid, sandbox, small, smash, stack, "
+        "tumbler, washer");
     EXPECT_EQ(sentenceFor("many_pyramids:bse=1"),
               "many_pyramids has no parameter 'bse'; it has rows, columns, base");
     EXPECT_EQ(sentenceFor("mixed:base=1"), "mixed has no parameter 'base'; it has none");
