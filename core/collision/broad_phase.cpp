@@ -330,7 +330,7 @@ void BroadPhase::joinMoved(std::span<const std::uint32_t> moved,
 }
 
 bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> travel,
-                        std::span<const std::uint32_t> active, std::span<const ShapeProxy> proxies,
+                        std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                         std::span<const ShapePair> forbidden, Executor* executor) {
     std::vector<ShapePair> fresh;
     if (m_fat.size() != tight.size()) {
@@ -339,10 +339,6 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
         joinAll(proxies, forbidden, executor, fresh);
         m_pairs.swap(fresh);
         return true;
-    }
-    std::vector<std::uint32_t> moved;
-    for (const std::uint32_t shape : active) {
-        if (!contains(m_fat[shape], tight[shape])) moved.push_back(shape);
     }
     m_movedCount = static_cast<std::uint32_t>(moved.size());
     if (moved.empty()) return false;

@@ -44,13 +44,19 @@ class BroadPhase {
     /// Forgets everything; the next update starts from nothing.
     void clear();
 
+    /// Whether the bounds are within the shape's fat box; not before the first update.
+    [[nodiscard]] bool holds(std::uint32_t shape, const Bounds& tight) const {
+        return shape < m_fat.size() && contains(m_fat[shape], tight);
+    }
+
     /// Brings the pair list up to date. `tight`: bounds by shape; `travel`: how far each shape may
-    /// move in a few ticks (m), a hint; `active`: places of shapes that may have moved, none of
-    /// them alone; others have not; `proxies`: the same from one `clear` to the next; `forbidden`:
-    /// sorted pairs of body places that a joint keeps from touching. Bounds and travel of a shape
-    /// alone are not read. Returns whether `pairs()` changed.
+    /// move in a few ticks (m), a hint; `moved`: places of the shapes that the broad phase does not
+    /// hold any more, none of them alone; at first it means nothing; `proxies`: the same from one
+    /// `clear` to the next; `forbidden`: sorted pairs of body places that a joint keeps from
+    /// touching. Bounds and travel of a shape alone are not read. Returns whether `pairs()`
+    /// changed.
     bool update(std::span<const Bounds> tight, std::span<const Vec2> travel,
-                std::span<const std::uint32_t> active, std::span<const ShapeProxy> proxies,
+                std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                 std::span<const ShapePair> forbidden, Executor* executor);
 
     /// Sorted by (a, b).

@@ -1,9 +1,10 @@
-/// A pair of shapes whose fat bounds overlap: its contact state, and what is derived from it.
+/// A touching contact: its state, and what is derived from it.
 #pragma once
 
 #include <cstdint>
 
 #include "core/collision/manifold.h"
+#include "core/contact/contact_fields.h"
 #include "core/state/records.h"
 
 namespace huestep {
@@ -11,32 +12,64 @@ namespace huestep {
 /// Speculative margin: points up to this far apart are contact points. See physics page.
 inline constexpr float speculativeDistance = 0.02f;  // m
 
-/// One candidate pair. `state` is state while `pointCount` > 0 and means nothing otherwise; all
-/// else is an accelerator. The array of contacts is sorted by key, so place order is key order.
+/// A touching pair of shapes. What `stateOf` reads is state; all else is an accelerator. While the
+/// solver holds the contact's row, the impulses in there are the current ones.
 struct Contact {
-    ContactState state;
+    ShapeId shapeA = 0;  ///< the lower shape id
+    ShapeId shapeB = 0;
     std::uint32_t bodyA = 0;  ///< places in the world's arrays
     std::uint32_t bodyB = 0;
     std::uint32_t placeA = 0;  ///< of the shapes
     std::uint32_t placeB = 0;
-    float friction = 0;
-    float restitution = 0;
-    float rollingResistance = 0;  ///< m: coefficient times the larger radius
-    float tangentSpeed = 0;
-    float reach = 0;      ///< m: farthest point of either body that can turn, from its centre
-    float roundness = 0;  ///< m: the larger radius
-    float slack = 0;      ///< m: how far the bodies may move while a manifold is kept
-    std::uint8_t pointCount = 0;  ///< 0: not touching
-
-    // The manifold at `state.relative`, turned into the world as body A was then. Anchors are from
-    // the two centres of mass; they coincided when the manifold was made.
-    Vec2 normal;
-    Vec2 anchorA[2];
-    Vec2 anchorB[2];
-    Rotation rotationA;  // of the bodies then
-    Rotation rotationB;
-    float separation[2]{};
+    float slack = 0;  ///< m: how far the bodies may move while a manifold of two points is kept
+    float turn = 0;   ///< body A's rotation when the manifold was made, see `turnOf`
     std::uint16_t feature[2]{};
+    std::uint8_t pointCount = 0;  ///< 0: not touching any more
+
+    // The manifold, turned into the world as body A was when it was made, and the impulses.
+    ContactFields<float> row{};
+    ContactPointFields<float> points[2]{};
+
+    [[nodiscard]] Vec2 normal() const { return {row.normalX, row.normalY}; }
+    [[nodiscard]] Rotation rotationA() const { return {row.cosineA, row.sineA}; }
+    [[nodiscard]] Rotation rotationB() const { return {row.cosineB, row.sineB}; }
+    [[nodiscard]] Vec2 anchorA(std::size_t point) const {
+        return {points[point].anchorAx, points[point].anchorAy};
+    }
+    [[nodiscard]] Vec2 anchorB(std::size_t point) const {
+        return {points[point].anchorBx, points[point].anchorBy};
+    }
+    /// Body B's centre frame seen from body A's when the manifold was made.
+    [[nodiscard]] Pose relative() const {
+        return {{row.relativeX, row.relativeY}, {row.relativeC, row.relativeS}};
+    }
 };
+
+/// The impulses of a contact as the next step starts from them.
+struct ContactImpulses {
+    std::array<float, 2> normal{};   ///< N·s, ≥ 0
+    std::array<float, 2> tangent{};  ///< N·s
+    float rolling = 0;               ///< N·m·s
+};
+
+inline ContactImpulses impulsesOf(const Contact& contact) {
+    return {{contact.points[0].normalImpulse, contact.points[1].normalImpulse},
+            {contact.points[0].tangentImpulse, contact.points[1].tangentImpulse},
+            contact.row.rollingImpulse};
+}
+
+inline void setImpulses(Contact& contact, const ContactImpulses& impulses) {
+    for (std::size_t i = 0; i < 2; ++i) {
+        contact.points[i].normalImpulse = impulses.normal[i];
+        contact.points[i].tangentImpulse = impulses.tangent[i];
+    }
+    contact.row.rollingImpulse = impulses.rolling;
+}
+
+/// The contact as state, with the impulses given: its own, or those of the solver's row.
+inline ContactState stateOf(const Contact& contact, const ContactImpulses& impulses) {
+    return {contact.shapeA,  contact.shapeB,   contact.relative(), contact.turn,
+            impulses.normal, impulses.tangent, impulses.rolling};
+}
 
 }  // namespace huestep

@@ -73,6 +73,32 @@ HUESTEP_INLINE F selectLanes(const Mask& mask, const F& yes, const F& no) {
     return mask ? yes : no;
 }
 
+HUESTEP_INLINE bool both(bool a, bool b) {
+    return a && b;
+}
+template <class Mask>
+HUESTEP_INLINE Mask both(const Mask& a, const Mask& b) {
+    return a & b;
+}
+HUESTEP_INLINE bool either(bool a, bool b) {
+    return a || b;
+}
+template <class Mask>
+HUESTEP_INLINE Mask either(const Mask& a, const Mask& b) {
+    return a | b;
+}
+
+/// −1 where the mask is set, 0 elsewhere.
+template <int W>
+HUESTEP_INLINE void storeMask(std::int32_t* to, const typename Lanes<W>::Mask& mask) {
+    if constexpr (W == 1) {
+        *to = mask ? -1 : 0;
+    } else {
+        typedef typename Lanes<W>::Mask Unaligned __attribute__((aligned(4), may_alias));
+        *reinterpret_cast<Unaligned*>(to) = mask;
+    }
+}
+
 template <class F>
 HUESTEP_INLINE F maxLanes(const F& a, const F& b) {
     return selectLanes(a > b, a, b);

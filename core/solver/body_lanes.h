@@ -53,7 +53,14 @@ HUESTEP_INLINE const float* floatsOf(const SolverPose& pose) {
     return &pose.x;
 }
 
-/// Four floats at `offset` of each lane's body or pose, as columns.
+HUESTEP_INLINE const float* floatsOf(const BodyMotion& motion) {
+    return &motion.position.x;
+}
+HUESTEP_INLINE const float* floatsOf(const Bounds& bounds) {
+    return &bounds.low.x;
+}
+
+/// Four floats at `offset` of each lane's record, as columns.
 template <class Record>
 HUESTEP_INLINE void gather(const Record* records, const BodyPlace* place, int offset, F4& c0,
                            F4& c1, F4& c2, F4& c3) {

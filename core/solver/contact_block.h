@@ -6,6 +6,9 @@
 
 #include <cstdint>
 
+#include "core/contact/contact_fields.h"
+#include "core/state/records.h"
+
 namespace huestep {
 
 /// What a solver pass reads and writes of a body: 32 bytes, one gather.
@@ -38,36 +41,25 @@ constexpr std::uint32_t blocksOf(std::uint32_t lanes) {
     return (lanes + blockLanes - 1) / blockLanes;
 }
 
-struct alignas(64) ContactPointRows {
-    using Row = float[blockLanes];
-    Row anchorAx, anchorAy;  ///< m, from A's centre, world axes, fixed over the step
-    Row anchorBx, anchorBy;
-    Row madeSeparation;  ///< m, when the manifold was made
-    Row separation;      ///< m, at the start, less n·(rB − rA)
-    Row normalMass;      ///< kg, of the row; 0 where there is no point
-    Row tangentMass;
-    Row normalImpulse;  ///< N·s, accumulated in the current substep's cycle
-    Row tangentImpulse;
-    Row maxNormalImpulse;  ///< over the step: whether the point ever pushed
-    Row approach;          ///< m/s, relative normal velocity at the start of the step
+using LaneRow = float[blockLanes];
+
+struct alignas(64) ContactPointRows : ContactPointFields<LaneRow> {
+    LaneRow separation;        ///< m, at the start of the step, less n·(rB − rA)
+    LaneRow maxNormalImpulse;  ///< over the step: whether the point ever pushed
+    LaneRow approach;          ///< m/s, relative normal velocity at the start of the step
 };
 
-struct alignas(64) ContactBlock {
-    using Row = float[blockLanes];
+struct alignas(64) ContactBlock : ContactFields<LaneRow> {
     BodyPlace bodyA[blockLanes];
     BodyPlace bodyB[blockLanes];
-    Row inverseMassA, inverseInertiaA;
-    Row inverseMassB, inverseInertiaB;
-    Row normalX, normalY;
-    Row cosineA, sineA;  ///< of the bodies' rotations when the manifold was made
-    Row cosineB, sineB;
-    Row friction;
     ContactPointRows points[2];
-    Row restitution;
-    Row tangentSpeed;
-    Row rollingResistance;  ///< m: coefficient times radius
-    Row rollingMass;
-    Row rollingImpulse;
+    // Of the world, for what is not solved: places of bodies and shapes.
+    std::int32_t motionA[blockLanes];
+    std::int32_t motionB[blockLanes];
+    std::int32_t boundsA[blockLanes];
+    std::int32_t boundsB[blockLanes];
+    std::int32_t kept[blockLanes];  ///< −1: the manifold is that of the last step; 0: it is not
+    std::int32_t hit[blockLanes];   ///< −1: the shapes met hard in this step; 0: they did not
 };
 
 /// Soft constraint coefficients of a damped oscillator (frequency f, damping ratio ζ) at step h:
@@ -112,12 +104,24 @@ using ContactKernel = void (*)(SolverBody* bodies, ContactBlock* blocks, std::ui
 using ContactRefresh = void (*)(const SolverBody* bodies, const SolverPose* poses,
                                 ContactBlock* blocks, std::uint32_t count);
 
+/// Finds which of `count` whole blocks' manifolds are kept (physics page, 4), of all 16 lanes:
+/// where the shapes' bounds overlap and the bodies have hardly moved against each other. The lanes'
+/// form of `mayRecycle`.
+using ContactCheck = void (*)(const BodyMotion* motions, const Bounds* bounds, ContactBlock* blocks,
+                              std::uint32_t count);
+
+/// Makes the impulses of `count` whole blocks fit for state (finite, canonical zeros) and marks the
+/// hits. Returns whether there are any.
+using ContactSettle = bool (*)(ContactBlock* blocks, std::uint32_t count);
+
 struct ContactKernels {
+    ContactCheck check = nullptr;
     ContactRefresh refresh = nullptr;
     ContactKernel warmStart = nullptr;
     ContactKernel solve = nullptr;  ///< normals with bias
     ContactKernel relax = nullptr;  ///< normals without bias, then friction and rolling
     ContactKernel restitute = nullptr;
+    ContactSettle settle = nullptr;
 };
 
 }  // namespace huestep

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 
+#include "core/contact/narrow_phase.h"
 #include "core/solver/body_lanes.h"
+#include "core/world/event.h"
 
 namespace huestep {
 
@@ -22,6 +24,41 @@ struct Pair : PairLanes<W> {
           nx(loadLanes<W>(block.normalX + lane)),
           ny(loadLanes<W>(block.normalY + lane)) {}
 };
+
+/// Whether the bodies of W contacts have moved so little against each other that their manifolds
+/// are kept: `mayRecycle` and the overlap of bounds, operation by operation.
+template <int W>
+HUESTEP_INLINE void checkLanes(const BodyMotion* motions, const Bounds* bounds, ContactBlock& block,
+                               int lane) {
+    PoseLanes<W> a, b;
+    gatherFour<W>(motions, block.motionA + lane, 0, a.x, a.y, a.c, a.s);
+    gatherFour<W>(motions, block.motionB + lane, 0, b.x, b.y, b.c, b.s);
+    LaneF<W> lowAx, lowAy, highAx, highAy, lowBx, lowBy, highBx, highBy;
+    gatherFour<W>(bounds, block.boundsA + lane, 0, lowAx, lowAy, highAx, highAy);
+    gatherFour<W>(bounds, block.boundsB + lane, 0, lowBx, lowBy, highBx, highBy);
+    const auto near =
+        both(both(lowAx <= highBx, lowBx <= highAx), both(lowAy <= highBy, lowBy <= highAy));
+
+    const auto row = [&](const LaneRow& field) __attribute__((always_inline)) {
+        return loadLanes<W>(field + lane);
+    };
+    const LaneF<W> cosine = splat<W>(recycleCosine);
+    const auto upright = both(a.c * row(block.cosineA) + a.s * row(block.sineA) > cosine,
+                              b.c * row(block.cosineB) + b.s * row(block.sineB) > cosine);
+    const LaneF<W> dx = b.x - a.x, dy = b.y - a.y;
+    const LaneF<W> movedX = (a.c * dx + a.s * dy) - row(block.relativeX);
+    const LaneF<W> movedY = (a.c * dy - a.s * dx) - row(block.relativeY);
+    const LaneF<W> c = a.c * b.c + a.s * b.s, s = a.c * b.s - a.s * b.c;
+    const LaneF<W> madeC = row(block.relativeC), madeS = row(block.relativeS);
+    const LaneF<W> turnedC = madeC * c + madeS * s;
+    const LaneF<W> turnedS = madeC * s - madeS * c;
+    const auto flat = row(block.roundness) * (splat<W>(1.0f) - turnedC) <= splat<W>(recycleLift);
+    const LaneF<W> zero = splat<W>(0.0f);
+    const LaneF<W> swing = row(block.reach) * selectLanes(turnedS < zero, zero - turnedS, turnedS);
+    const LaneF<W> room = row(block.slack) - swing;
+    const auto still = both(room > zero, movedX * movedX + movedY * movedY < room * room);
+    storeMask<W>(block.kept + lane, both(both(near, upright), both(flat, still)));
+}
 
 /// How far a body has turned since its manifold was made: q₀⁻¹ q.
 template <int W>
@@ -214,6 +251,55 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
     pair.store(bodies, block, lane);
 }
 
+/// The number where it is finite, 0 where it is not, and +0 for either zero: `finiteOrZero`.
+template <int W>
+HUESTEP_INLINE LaneF<W> settled(LaneRow& field, int lane) {
+    const LaneF<W> v = loadLanes<W>(field + lane);
+    const LaneF<W> zero = splat<W>(0.0f);
+    const LaneF<W> whole = selectLanes(v - v == zero, v, zero) + zero;
+    storeLanes<W>(field + lane, whole);
+    return whole;
+}
+
+template <int W>
+HUESTEP_INLINE void settleLanes(ContactBlock& block, int lane) {
+    settled<W>(block.rollingImpulse, lane);
+    const LaneF<W> zero = splat<W>(0.0f);
+    auto hit = zero > zero;
+    for (ContactPointRows& p : block.points) {
+        settled<W>(p.normalImpulse, lane);
+        settled<W>(p.tangentImpulse, lane);
+        hit = either(hit, both(loadLanes<W>(p.approach + lane) < splat<W>(-hitSpeed),
+                               loadLanes<W>(p.maxNormalImpulse + lane) > zero));
+    }
+    storeMask<W>(block.hit + lane, hit);
+}
+
+HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
+    std::int32_t all = 0;
+    for (const std::int32_t m : mask) all |= m;
+    return all != 0;
+}
+
+#define HUESTEP_CHECK(W, attributes)                                          \
+    attributes void check##W(const BodyMotion* motions, const Bounds* bounds, \
+                             ContactBlock* blocks, std::uint32_t count) {     \
+        for (std::uint32_t i = 0; i < count; ++i) {                           \
+            for (int lane = 0; lane < blockLanes; lane += W) {                \
+                checkLanes<W>(motions, bounds, blocks[i], lane);              \
+            }                                                                 \
+        }                                                                     \
+    }                                                                         \
+    attributes bool settle##W(ContactBlock* blocks, std::uint32_t count) {    \
+        bool hits = false;                                                    \
+        for (std::uint32_t i = 0; i < count; ++i) {                           \
+            for (int lane = 0; lane < blockLanes; lane += W) {                \
+                settleLanes<W>(blocks[i], lane);                              \
+            }                                                                 \
+            hits = hits || anySet(blocks[i].hit);                             \
+        }                                                                     \
+        return hits;                                                          \
+    }
 #define HUESTEP_REFRESH(W, attributes)                                            \
     attributes void refresh##W(const SolverBody* bodies, const SolverPose* poses, \
                                ContactBlock* blocks, std::uint32_t count) {       \
@@ -224,13 +310,14 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
         }                                                                         \
     }
 #define HUESTEP_KERNELS(W, attributes)                                \
+    HUESTEP_CHECK(W, attributes)                                      \
     HUESTEP_REFRESH(W, attributes)                                    \
     HUESTEP_PASS(warmStart, ContactBlock, ContactPass, W, attributes) \
     HUESTEP_PASS(solve, ContactBlock, ContactPass, W, attributes)     \
     HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)     \
     HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
 #define HUESTEP_ENTRY(W, attributes) \
-    ContactKernels{refresh##W, warmStart##W, solve##W, relax##W, restitute##W},
+    ContactKernels{check##W, refresh##W, warmStart##W, solve##W, relax##W, restitute##W, settle##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 

@@ -1,24 +1,63 @@
 // Rows of a step: from contacts, joints and motions before it, and back into them after it.
 
+#include <algorithm>
+#include <array>
+
 #include "core/math/finite.h"
+#include "core/solver/body_lanes.h"
+#include "core/solver/contact_kernels.h"
 #include "core/solver/soft_step.h"
 
 namespace huestep {
 
 namespace {
 
-/// What padding is made of.
+/// What padding is made of: no mass and no point, so every row of it does nothing.
 const Contact nothing{};
 
-/// A point that is not there: no mass, no impulse, so every row of it does nothing.
-void clearPoint(ContactPointRows& p, std::uint32_t lane) {
-    p.anchorAx[lane] = p.anchorAy[lane] = p.anchorBx[lane] = p.anchorBy[lane] = 0.0f;
-    p.madeSeparation[lane] = p.normalMass[lane] = p.tangentMass[lane] = 0.0f;
-    p.normalImpulse[lane] = p.tangentImpulse[lane] = 0.0f;
+/// Writes 16 records side by side: row k of `rows` gets float k of each.
+void transpose(const std::array<const float*, blockLanes>& records, std::size_t floats,
+               float* rows) {
+    for (std::size_t lane = 0; lane < blockLanes; lane += 4) {
+        for (std::size_t field = 0; field < floats; field += 4) {
+            // The last four may overlap those before.
+            const std::size_t at = std::min(field, floats - 4);
+            F4 c0, c1, c2, c3;
+            transpose4(records[lane] + at, records[lane + 1] + at, records[lane + 2] + at,
+                       records[lane + 3] + at, c0, c1, c2, c3);
+            float* to = rows + at * blockLanes + lane;
+            storeLanes<4>(to, c0);
+            storeLanes<4>(to + blockLanes, c1);
+            storeLanes<4>(to + 2 * blockLanes, c2);
+            storeLanes<4>(to + 3 * blockLanes, c3);
+        }
+    }
 }
 
-float inverseOf(float k) {
-    return k > 0.0f ? 1.0f / k : 0.0f;
+template <template <class> class Fields>
+float* rowsOf(Fields<LaneRow>& fields) {
+    static_assert(sizeof(Fields<LaneRow>) == sizeof(Fields<float>) * blockLanes);
+    return reinterpret_cast<float*>(&fields);
+}
+
+/// The block as the transpose of its contacts' records.
+template <template <class> class Fields, class Of>
+void transposeFields(const std::array<const Contact*, blockLanes>& contacts, Fields<LaneRow>& rows,
+                     Of&& fieldsOf) {
+    std::array<const float*, blockLanes> records{};
+    for (std::size_t lane = 0; lane < blockLanes; ++lane) {
+        const Fields<float>& record = fieldsOf(*contacts[lane]);
+        records[lane] = reinterpret_cast<const float*>(&record);
+    }
+    transpose(records, sizeof(Fields<float>) / sizeof(float), rowsOf<Fields>(rows));
+}
+
+/// One lane of it.
+template <template <class> class Fields>
+void writeLane(const Fields<float>& record, Fields<LaneRow>& rows, std::uint32_t lane) {
+    const float* from = reinterpret_cast<const float*>(&record);
+    float* to = rowsOf<Fields>(rows) + lane;
+    for (std::size_t k = 0; k < sizeof(record) / sizeof(float); ++k) to[k * blockLanes] = from[k];
 }
 
 }  // namespace
@@ -104,16 +143,8 @@ void SoftStep::preparePins(const Plan& plan, const SolverWorld& world, Range blo
 void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world,
                              const ContactKernels& kernels, Range blocks,
                              ContactFeatures& features) {
-    const auto isKept = [&](std::uint32_t block) {
-        if (world.recycled.empty()) return false;
-        for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
-            const std::uint32_t contact = plan.contactOfLane[block * blockLanes + lane];
-            if (contact != none && !world.recycled[contact]) return false;
-        }
-        return true;
-    };
     for (std::uint32_t block = blocks.begin; block < blocks.end; ++block) {
-        if (!isKept(block)) makeBlock(plan, world, block);
+        if (!world.rowsHold) makeBlock(plan, world, block);
         features = features | m_blockFeatures[block];
     }
     if (blocks.begin == blocks.end) return;
@@ -124,92 +155,83 @@ void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world,
 void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
     ContactBlock& rows = m_blocks[block];
     ContactFeatures features;
+    std::array<const Contact*, blockLanes> contacts{};
     for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
         const std::uint32_t at = block * blockLanes + lane;
         const std::uint32_t place = plan.contactOfLane[at];
         // Padding reads the world and writes to nowhere.
         const Contact& contact = place == none ? nothing : world.contacts[place];
-        makeLane(contact, plan.lanePlaces[at], rows, lane);
-        features.friction |= contact.friction > 0.0f;
-        features.restitution |= contact.restitution > 0.0f;
-        features.tangentSpeed |= contact.tangentSpeed != 0.0f;
-        features.rolling |= contact.rollingResistance > 0.0f;
+        contacts[lane] = &contact;
+        rows.bodyA[lane] = plan.lanePlaces[at].a;
+        rows.bodyB[lane] = plan.lanePlaces[at].b;
+        rows.motionA[lane] = static_cast<std::int32_t>(contact.bodyA);
+        rows.motionB[lane] = static_cast<std::int32_t>(contact.bodyB);
+        rows.boundsA[lane] = static_cast<std::int32_t>(contact.placeA);
+        rows.boundsB[lane] = static_cast<std::int32_t>(contact.placeB);
+        features.friction |= contact.row.friction > 0.0f;
+        features.restitution |= contact.row.restitution > 0.0f;
+        features.tangentSpeed |= contact.row.tangentSpeed != 0.0f;
+        features.rolling |= contact.row.rollingResistance > 0.0f;
+    }
+    transposeFields<ContactFields>(
+        contacts, rows, [](const Contact& c) -> auto& { return c.row; });
+    for (std::size_t i = 0; i < 2; ++i) {
+        transposeFields<ContactPointFields>(
+            contacts, rows.points[i], [i](const Contact& c) -> auto& { return c.points[i]; });
     }
     m_blockFeatures[block] = features;
 }
 
-void SoftStep::makeLane(const Contact& contact, const ConstraintBodies& places, ContactBlock& rows,
-                        std::uint32_t lane) const {
-    const Source& a = m_sources[static_cast<std::size_t>(readPlace(places.a))];
-    const Source& b = m_sources[static_cast<std::size_t>(readPlace(places.b))];
-    const float mA = a.inverseMass, iA = a.inverseInertia;
-    const float mB = b.inverseMass, iB = b.inverseInertia;
-    const Vec2 n = contact.normal;
-    rows.bodyA[lane] = places.a;
-    rows.bodyB[lane] = places.b;
-    rows.inverseMassA[lane] = mA;
-    rows.inverseInertiaA[lane] = iA;
-    rows.inverseMassB[lane] = mB;
-    rows.inverseInertiaB[lane] = iB;
-    rows.normalX[lane] = n.x;
-    rows.normalY[lane] = n.y;
-    rows.cosineA[lane] = contact.rotationA.c;
-    rows.sineA[lane] = contact.rotationA.s;
-    rows.cosineB[lane] = contact.rotationB.c;
-    rows.sineB[lane] = contact.rotationB.s;
-    rows.friction[lane] = contact.friction;
-    rows.restitution[lane] = contact.restitution;
-    rows.tangentSpeed[lane] = contact.tangentSpeed;
-    rows.rollingResistance[lane] = contact.rollingResistance;
-    rows.rollingMass[lane] = inverseOf(iA + iB);
-    rows.rollingImpulse[lane] = contact.state.rollingImpulse;
+void SoftStep::writeRow(std::uint32_t lane, const Contact& contact) {
+    ContactBlock& rows = m_blocks[lane / blockLanes];
+    writeLane<ContactFields>(contact.row, rows, lane % blockLanes);
     for (std::size_t i = 0; i < 2; ++i) {
-        ContactPointRows& p = rows.points[i];
-        if (i >= contact.pointCount) {
-            clearPoint(p, lane);
-            continue;
-        }
-        const Vec2 rA = contact.anchorA[i];
-        const Vec2 rB = contact.anchorB[i];
-        p.anchorAx[lane] = rA.x;
-        p.anchorAy[lane] = rA.y;
-        p.anchorBx[lane] = rB.x;
-        p.anchorBy[lane] = rB.y;
-        p.madeSeparation[lane] = contact.separation[i];
-        const float rnA = cross(rA, n), rnB = cross(rB, n);
-        const float rtA = dot(rA, n), rtB = dot(rB, n);  // r × t = −r·n for t = (ny, −nx)
-        p.normalMass[lane] = inverseOf(mA + mB + iA * rnA * rnA + iB * rnB * rnB);
-        p.tangentMass[lane] = inverseOf(mA + mB + iA * rtA * rtA + iB * rtB * rtB);
-        p.normalImpulse[lane] = contact.state.normalImpulse[i];
-        p.tangentImpulse[lane] = contact.state.tangentImpulse[i];
+        writeLane<ContactPointFields>(contact.points[i], rows.points[i], lane % blockLanes);
     }
 }
 
-void SoftStep::storeBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
-                           std::vector<ContactHit>& hits) {
+void SoftStep::check(std::span<const BodyMotion> motions, std::span<const Bounds> bounds, Simd simd,
+                     Range blocks) {
+    contactKernels(simd).check(motions.data(), bounds.data(), &m_blocks[blocks.begin],
+                               blocks.end - blocks.begin);
+}
+
+bool SoftStep::allKept(std::uint32_t block) const {
+    std::int32_t all = -1;
+    for (const std::int32_t kept : m_blocks[block].kept) all &= kept;
+    return all != 0;
+}
+
+ContactImpulses SoftStep::impulses(std::uint32_t lane) const {
+    const ContactBlock& rows = m_blocks[lane / blockLanes];
+    const std::uint32_t at = lane % blockLanes;
+    return {{rows.points[0].normalImpulse[at], rows.points[1].normalImpulse[at]},
+            {rows.points[0].tangentImpulse[at], rows.points[1].tangentImpulse[at]},
+            rows.rollingImpulse[at]};
+}
+
+/// Rows go on from what the state holds, to the bit: settled impulses are both.
+void SoftStep::settleBlocks(const Plan& plan, const SolverWorld& world,
+                            const ContactKernels& kernels, Range blocks,
+                            std::vector<ContactHit>& hits) {
+    if (blocks.begin == blocks.end) return;
+    if (!kernels.settle(&m_blocks[blocks.begin], blocks.end - blocks.begin)) return;
     for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
         const std::uint32_t place = plan.contactOfLane[at];
-        if (place == none) continue;
-        ContactBlock& rows = m_blocks[at / blockLanes];
+        const ContactBlock& rows = m_blocks[at / blockLanes];
         const std::uint32_t lane = at % blockLanes;
-        Contact& contact = world.contacts[place];
-        // Rows that stay go on from what the state holds, to the bit.
-        const auto settled = [lane](ContactBlock::Row& row) {
-            return row[lane] = finiteOrZero(row[lane]);
-        };
-        contact.state.rollingImpulse = settled(rows.rollingImpulse);
+        if (place == none || rows.hit[lane] == 0) continue;
+        const Contact& contact = world.contacts[place];
         ContactHit hit;
         for (std::size_t i = 0; i < contact.pointCount; ++i) {
-            ContactPointRows& p = rows.points[i];
-            contact.state.normalImpulse[i] = settled(p.normalImpulse);
-            contact.state.tangentImpulse[i] = settled(p.tangentImpulse);
+            const ContactPointRows& p = rows.points[i];
             const float approach = -p.approach[lane];
             if (!(p.maxNormalImpulse[lane] > 0.0f && approach > hitSpeed)) continue;
             if (!(approach > hit.approach)) continue;
-            hit.shapeA = contact.state.shapeA;
-            hit.shapeB = contact.state.shapeB;
-            hit.point = world.motions[contact.bodyA].position + contact.anchorA[i];
-            hit.normal = contact.normal;
+            hit.shapeA = contact.shapeA;
+            hit.shapeB = contact.shapeB;
+            hit.point = world.motions[contact.bodyA].position + contact.anchorA(i);
+            hit.normal = contact.normal();
             hit.approach = approach;
         }
         if (hit.approach > 0.0f) hits.push_back(hit);

@@ -188,8 +188,9 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
     timer.done(Stage::Solve);
 
     auto found = perBlock<std::vector<ContactHit>>(blocks, blockGrain);
-    over(batch.firstBlock, batch.endBlock, blockGrain,
-         [&](Range range, std::uint32_t index) { storeBlocks(plan, world, range, found[index]); });
+    over(batch.firstBlock, batch.endBlock, blockGrain, [&](Range range, std::uint32_t index) {
+        settleBlocks(plan, world, *pass.contacts, range, found[index]);
+    });
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { storeJoints(world, range); });
@@ -232,7 +233,7 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
                           features);
             mine.use(features);
             substeps(plan, batch, mine, 0, 1, nullptr);
-            storeBlocks(plan, world, {batch.firstBlock, batch.endBlock}, found[i]);
+            settleBlocks(plan, world, *pass.contacts, {batch.firstBlock, batch.endBlock}, found[i]);
             storeJoints(world, {batch.firstJoint, batch.endJoint});
             storePins(plan, world, {batch.firstPinBlock, batch.endPinBlock});
         }

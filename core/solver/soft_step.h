@@ -41,23 +41,45 @@ struct SolverWorld {
     std::span<const JointInfo> joints;
     std::span<const ConstraintPlaces> jointBodies;  ///< places of each joint's two bodies
     std::span<JointImpulses> jointImpulses;
-    std::span<Contact> contacts;
-    /// By contact: not 0 where its manifold is that of the last solve, which had this very plan.
-    /// Empty: nowhere.
-    std::span<const std::uint8_t> recycled;
+    std::span<const Contact> contacts;
+    bool rowsHold = false;  ///< contact rows are those of the last solve, which had this very plan
     Vec2 gravity;
     float stepSeconds = 0;
     std::uint32_t substeps = 4;
 };
 
 /// Solves a plan. Holds the rows of a step: contact rows stay for the next one where plan and
-/// manifold do, all others for their memory alone.
+/// manifold do, and hold the contacts' impulses then; all others stay for their memory alone.
+///
+/// A lane is block · 16 + place in the block, as in `Plan::contactOfLane`.
 class SoftStep {
  public:
-    /// Rows from contacts, joints and motions; all substeps; impulses back into contacts and
-    /// joints. A giant batch goes through each stage on all threads; any other goes through all of
-    /// them on one thread, while its rows are in that core's cache. `hits` gets contacts that met
-    /// hard, by key.
+    struct Range {
+        std::uint32_t begin = 0;
+        std::uint32_t end = 0;
+    };
+
+    /// How many blocks of contact rows there are.
+    [[nodiscard]] std::uint32_t blockCount() const {
+        return static_cast<std::uint32_t>(m_blocks.size());
+    }
+    /// Finds out whose manifolds are kept, for whole blocks.
+    void check(std::span<const BodyMotion> motions, std::span<const Bounds> bounds, Simd simd,
+               Range blocks);
+    /// Whether every lane of a block is one that is kept, padding aside or not.
+    [[nodiscard]] bool allKept(std::uint32_t block) const;
+    [[nodiscard]] bool isKept(std::uint32_t lane) const {
+        return m_blocks[lane / blockLanes].kept[lane % blockLanes] != 0;
+    }
+    void dropLane(std::uint32_t lane) { m_blocks[lane / blockLanes].kept[lane % blockLanes] = 0; }
+    [[nodiscard]] ContactImpulses impulses(std::uint32_t lane) const;
+    /// Writes a contact's row to its lane, whose bodies stay.
+    void writeRow(std::uint32_t lane, const Contact& contact);
+
+    /// Rows from contacts, joints and motions; all substeps; joints' impulses back into joints;
+    /// contacts' stay in their rows. A giant batch goes through each stage on all threads; any
+    /// other goes through all of them on one thread, while its rows are in that core's cache.
+    /// `hits` gets contacts that met hard, by key.
     void solve(const Plan& plan, const SolverWorld& world, Simd simd, Executor* executor,
                std::vector<ContactHit>& hits, StageTimer& timer);
 
@@ -75,10 +97,6 @@ class SoftStep {
         float linearFactor = 1, angularFactor = 1;  // of damping, a substep
         Vec2 lag;  // m/s, by how much the mean velocity of a substep is behind that at its end
     };
-    struct Range {
-        std::uint32_t begin = 0;
-        std::uint32_t end = 0;
-    };
     struct Pass;
     struct Sweep;
     static const Sweep warmStartSweep, solveSweep, relaxSweep, restituteSweep;
@@ -89,10 +107,8 @@ class SoftStep {
     void prepareBlocks(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
                        Range blocks, ContactFeatures& features);
     void makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block);
-    void makeLane(const Contact& contact, const ConstraintBodies& places, ContactBlock& rows,
-                  std::uint32_t lane) const;
-    void storeBlocks(const Plan& plan, const SolverWorld& world, Range blocks,
-                     std::vector<ContactHit>& hits);
+    void settleBlocks(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
+                      Range blocks, std::vector<ContactHit>& hits);
     void storeJoints(const SolverWorld& world, Range joints) const;
     [[nodiscard]] JointRow jointRow(const SolverWorld& world, std::uint32_t joint,
                                     const ConstraintBodies& places) const;

@@ -38,12 +38,24 @@ void World::Data::wake(std::uint32_t body) {
     if (state.bodies[body].dynamic()) state.motions[body].rest = 0;
 }
 
-/// Copies the touching contacts, in key order, to where snapshots and hashes look for them.
+/// Gathers the touching contacts, in key order, to where snapshots and hashes look for them.
 void World::Data::contactsToState() const {
     if (contactsInState) return;
+    const Accelerators& acc = accelerators;
+    std::vector<std::uint32_t> laneOf(acc.contacts.size(), none);
+    if (acc.rowsHold) {
+        for (std::uint32_t lane = 0; lane < acc.plan.contactOfLane.size(); ++lane) {
+            const std::uint32_t contact = acc.plan.contactOfLane[lane];
+            if (contact != none) laneOf[contact] = lane;
+        }
+    }
     state.contacts.clear();
-    for (const Contact& contact : accelerators.contacts) {
-        if (contact.pointCount > 0) state.contacts.push_back(contact.state);
+    for (const Candidate& candidate : acc.candidates) {
+        if (candidate.contact == none) continue;
+        const Contact& contact = acc.contacts[candidate.contact];
+        const std::uint32_t lane = laneOf[candidate.contact];
+        state.contacts.push_back(
+            stateOf(contact, lane == none ? impulsesOf(contact) : acc.solver.impulses(lane)));
     }
     contactsInState = true;
 }

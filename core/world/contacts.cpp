@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
+#include <utility>
 
 #include "core/parallel/over_range.h"
 #include "core/world/world_data.h"
@@ -10,133 +12,257 @@ namespace huestep {
 
 namespace {
 
-constexpr std::uint32_t contactGrain = 256;
+constexpr std::uint32_t blockGrain = 16;  // of rows: 256 contacts
+constexpr std::uint32_t candidateGrain = 512;
 // Kept manifolds may slide this part of the smaller shape's size: past that a small box would stand
 // on the air beside its ledge.
 constexpr float recyclePart = 0.2f;
 constexpr float recycleMost = 0.05f;  // m
 
-/// What of a contact follows from its two shapes.
-Contact contactOf(const ShapePair& pair, const Shapes& known, std::span<const ShapeInfo> shapes) {
-    const ShapeInfo& a = shapes[pair.a];
-    const ShapeInfo& b = shapes[pair.b];
-    Contact c{};
-    c.state.shapeA = a.id;
-    c.state.shapeB = b.id;
+/// What of a contact follows from its two shapes and their bodies.
+Contact contactOf(const ShapePair& pair, const Shapes& known, const WorldState& state) {
+    const ShapeInfo& a = state.shapes[pair.a];
+    const ShapeInfo& b = state.shapes[pair.b];
+    Contact c;
+    c.shapeA = a.id;
+    c.shapeB = b.id;
     c.placeA = pair.a;
     c.placeB = pair.b;
     c.bodyA = known.proxies[pair.a].body;
     c.bodyB = known.proxies[pair.b].body;
-    c.reach = maxOf(known.reach[c.bodyA], known.reach[c.bodyB]);
-    c.roundness = maxOf(a.radius, b.radius);
     c.slack = minOf(recycleMost, recyclePart * minOf(known.sizes[pair.a], known.sizes[pair.b]));
-    c.friction = std::sqrt(a.friction * b.friction);
-    c.restitution = maxOf(a.restitution, b.restitution);
-    c.rollingResistance = maxOf(a.rollingResistance, b.rollingResistance) * c.roundness;
-    c.tangentSpeed = a.tangentSpeed + b.tangentSpeed;
+    ContactFields<float>& row = c.row;
+    row.inverseMassA = state.bodies[c.bodyA].inverseMass;
+    row.inverseInertiaA = state.bodies[c.bodyA].inverseInertia;
+    row.inverseMassB = state.bodies[c.bodyB].inverseMass;
+    row.inverseInertiaB = state.bodies[c.bodyB].inverseInertia;
+    row.reach = maxOf(known.reach[c.bodyA], known.reach[c.bodyB]);
+    row.roundness = maxOf(a.radius, b.radius);
+    row.friction = std::sqrt(a.friction * b.friction);
+    row.restitution = maxOf(a.restitution, b.restitution);
+    row.rollingResistance = maxOf(a.rollingResistance, b.rollingResistance) * row.roundness;
+    row.tangentSpeed = a.tangentSpeed + b.tangentSpeed;
+    const float k = row.inverseInertiaA + row.inverseInertiaB;
+    row.rollingMass = k > 0.0f ? 1.0f / k : 0.0f;
     return c;
+}
+
+/// The contact of two shapes that did not touch before, if they do now.
+std::optional<Contact> newContact(const ShapePair& pair, const Shapes& known,
+                                  const WorldState& state, const NarrowPhaseInput& in) {
+    Contact contact = contactOf(pair, known, state);
+    if (renewContact(contact, in) == ContactUpdate::Apart) return std::nullopt;
+    return contact;
 }
 
 }  // namespace
 
-/// Brings the contacts in line with the pairs: old ones keep their place in key order with all they
-/// hold, new ones begin apart, and those whose pair is gone end.
-void World::Data::layOutContacts() {
+std::uint32_t World::Data::addContact(const Contact& contact) {
     Accelerators& acc = accelerators;
-    const Shapes& shapes = acc.shapes;
-    acc.rowsHold = false;
-    std::vector<Contact>& old = acc.contactScratch;
-    acc.contacts.swap(old);
-    if (!acc.contactsValid) {
+    acc.linksStale = true;
+    if (acc.freeContacts.empty()) {
+        acc.contacts.push_back(contact);
+        acc.inLanes.push_back(0);
+        return static_cast<std::uint32_t>(acc.contacts.size() - 1);
+    }
+    const std::uint32_t place = acc.freeContacts.back();
+    acc.freeContacts.pop_back();
+    acc.contacts[place] = contact;
+    acc.inLanes[place] = 0;
+    return place;
+}
+
+void World::Data::dropContact(std::uint32_t contact) {
+    Accelerators& acc = accelerators;
+    acc.linksStale = true;
+    acc.contacts[contact].pointCount = 0;
+    acc.freeContacts.push_back(contact);
+}
+
+/// Brings the candidates in line with the pairs: old ones keep their place in key order with their
+/// contact, and those whose pair is gone end.
+void World::Data::layOutCandidates() {
+    Accelerators& acc = accelerators;
+    std::vector<Candidate>& old = acc.candidateScratch;
+    acc.candidates.swap(old);
+    if (!acc.candidatesValid) {
         // After a restore or a change of definitions the contacts are in the state alone.
         assert(old.empty());
         for (const ContactState& c : state.contacts) {
             // Both shapes are there: whoever removes one removes its contacts.
             const ShapePair pair{*placeById(state.shapes, c.shapeA),
                                  *placeById(state.shapes, c.shapeB)};
-            Contact contact = contactOf(pair, shapes, state.shapes);
-            contact.state = c;
-            remakeManifold(contact, narrowPhaseInput());
-            old.push_back(contact);
+            Contact contact = contactOf(pair, acc.shapes, state);
+            contact.turn = c.turn;
+            setImpulses(contact, {c.normalImpulse, c.tangentImpulse, c.rollingImpulse});
+            remakeManifold(contact, c.relative, narrowPhaseInput());
+            // A snapshot from outside may claim a contact that is none.
+            old.push_back({pair, contact.pointCount > 0 ? addContact(contact) : none});
         }
-        acc.contactsValid = true;
+        acc.candidatesValid = true;
     }
-    acc.contacts.clear();
-    acc.contacts.reserve(acc.broadPhase.pairs().size());
+    acc.candidates.clear();
+    acc.candidates.reserve(acc.broadPhase.pairs().size());
     auto from = old.begin();
     const auto dropBefore = [&](const ShapePair* pair) {
-        for (; from != old.end() && (!pair || ShapePair{from->placeA, from->placeB} < *pair);
-             ++from) {
-            if (from->pointCount == 0) continue;
+        for (; from != old.end() && (!pair || from->pair < *pair); ++from) {
+            if (from->contact == none) continue;
+            const Contact& contact = acc.contacts[from->contact];
             // A contact at rest stays as it is, whatever the bounds say: nobody looks at it.
-            if (!isActive(activity[from->bodyA] | activity[from->bodyB])) {
-                acc.contacts.push_back(*from);
+            if (!isActive(activity[contact.bodyA] | activity[contact.bodyB])) {
+                acc.candidates.push_back(*from);
             } else {
-                events.ends.push_back({from->state.shapeA, from->state.shapeB});
+                events.ends.push_back({contact.shapeA, contact.shapeB});
+                dropContact(from->contact);
             }
         }
     };
     for (const ShapePair& pair : acc.broadPhase.pairs()) {
         dropBefore(&pair);
-        if (from != old.end() && ShapePair{from->placeA, from->placeB} == pair) {
-            acc.contacts.push_back(*from++);
+        if (from != old.end() && from->pair == pair) {
+            acc.candidates.push_back(*from++);
         } else {
-            acc.contacts.push_back(contactOf(pair, shapes, state.shapes));
+            acc.candidates.push_back({pair, none});
         }
     }
     dropBefore(nullptr);
 }
 
-void World::Data::collideAll(Executor* executor) {
+/// Takes the impulses of contacts whose manifold is kept out of the solver's rows. Others have had
+/// theirs fetched when they got a new manifold.
+void World::Data::fetchImpulses(Executor* executor) {
+    Accelerators& acc = accelerators;
+    overRange(executor, acc.solver.blockCount(), blockGrain,
+              [&](std::uint32_t begin, std::uint32_t end) {
+                  for (std::uint32_t lane = begin * blockLanes; lane < end * blockLanes; ++lane) {
+                      const std::uint32_t contact = acc.plan.contactOfLane[lane];
+                      if (contact == none || !acc.solver.isKept(lane)) continue;
+                      setImpulses(acc.contacts[contact], acc.solver.impulses(lane));
+                  }
+              });
+}
+
+void World::Data::collideAll(Simd simd, Executor* executor) {
+    Accelerators& acc = accelerators;
     const NarrowPhaseInput in = narrowPhaseInput();
-    const std::size_t count = accelerators.contacts.size();
-    accelerators.recycled.assign(count, 0);
-    // What one block of contacts found: how many, which began or ended, and whether any sleeper is
+    acc.freshLanes.clear();
+    // What one block of work found: which contacts ended or began, and whether any sleeper is
     // touched by what is awake.
     struct Findings {
-        std::uint32_t pairs = 0, recycled = 0;
-        std::vector<std::uint32_t> changed;
+        std::uint32_t recycled = 0;
+        std::vector<std::uint32_t> fresh;                      // lanes
+        std::vector<std::uint32_t> ended;                      // contacts
+        std::vector<std::pair<std::uint32_t, Contact>> begun;  // with the candidate's place
         bool disturbs = false;
     };
+    const auto activityOfBoth = [&](const Contact& contact) {
+        return static_cast<std::uint8_t>(activity[contact.bodyA] | activity[contact.bodyB]);
+    };
+    bool disturbs = false;
+    const auto collect = [&](std::vector<Findings>& findings) {
+        for (Findings& f : findings) {
+            report.recycled += f.recycled;
+            disturbs |= f.disturbs;
+            acc.freshLanes.insert(acc.freshLanes.end(), f.fresh.begin(), f.fresh.end());
+            for (const std::uint32_t contact : f.ended) {
+                const Contact& c = acc.contacts[contact];
+                const auto at = std::lower_bound(
+                    acc.candidates.begin(), acc.candidates.end(), ShapePair{c.placeA, c.placeB},
+                    [](const Candidate& x, const ShapePair& pair) { return x.pair < pair; });
+                at->contact = none;
+                events.ends.push_back({c.shapeA, c.shapeB});
+                dropContact(contact);
+            }
+            for (const auto& [candidate, contact] : f.begun) {
+                acc.candidates[candidate].contact = addContact(contact);
+                events.begins.push_back({contact.shapeA, contact.shapeB});
+            }
+        }
+    };
+    const auto lookAt = [&](std::uint32_t place, ContactUpdate update, Findings& mine) {
+        const Contact& contact = acc.contacts[place];
+        mine.recycled += update == ContactUpdate::Recycled;
+        if (contact.pointCount == 0) {
+            mine.ended.push_back(place);
+        } else if (anyAsleep) {
+            const std::uint8_t both = activityOfBoth(contact);
+            mine.disturbs |= isActive(both) && isAsleep(both);
+        }
+    };
+
+    if (acc.rowsHold) {
+        const std::uint32_t blocks = acc.solver.blockCount();
+        auto findings = perBlock<Findings>(blocks, blockGrain);
+        overRange(executor, blocks, blockGrain, [&](std::uint32_t begin, std::uint32_t end) {
+            Findings& mine = findings[begin / blockGrain];
+            acc.solver.check(state.motions, acc.tight, simd, {begin, end});
+            for (std::uint32_t block = begin; block < end; ++block) {
+                if (!anyAsleep && acc.solver.allKept(block)) {
+                    mine.recycled += blockLanes;
+                    continue;
+                }
+                for (std::uint32_t lane = block * blockLanes; lane < (block + 1) * blockLanes;
+                     ++lane) {
+                    const std::uint32_t place = acc.plan.contactOfLane[lane];
+                    if (place == none) continue;
+                    Contact& contact = acc.contacts[place];
+                    if (contact.pointCount == 0) {
+                        acc.solver.dropLane(lane);  // it ended with its pair
+                    } else if (anyAsleep && !isActive(activityOfBoth(contact))) {
+                        // It fell asleep; who wakes it looks at the contact alone.
+                        setImpulses(contact, acc.solver.impulses(lane));
+                        acc.solver.dropLane(lane);
+                        acc.inLanes[place] = 0;
+                    } else if (acc.solver.isKept(lane)) {
+                        lookAt(place, ContactUpdate::Recycled, mine);
+                    } else {
+                        setImpulses(contact, acc.solver.impulses(lane));
+                        mine.fresh.push_back(lane);
+                        lookAt(place, renewContact(contact, in), mine);
+                    }
+                }
+            }
+        });
+        collect(findings);
+    }
+
+    const std::size_t count = acc.candidates.size();
     std::vector<std::uint8_t> looked(anyAsleep ? count : 0, 0);
     bool woke = false;
     do {
-        auto findings = perBlock<Findings>(count, contactGrain);
-        overRange(executor, count, contactGrain, [&](std::uint32_t begin, std::uint32_t end) {
-            Findings& mine = findings[begin / contactGrain];
+        auto findings = perBlock<Findings>(count, candidateGrain);
+        overRange(executor, count, candidateGrain, [&](std::uint32_t begin, std::uint32_t end) {
+            Findings& mine = findings[begin / candidateGrain];
             for (std::uint32_t i = begin; i < end; ++i) {
-                Contact& contact = accelerators.contacts[i];
-                const auto both =
-                    static_cast<std::uint8_t>(activity[contact.bodyA] | activity[contact.bodyB]);
+                const Candidate& candidate = acc.candidates[i];
+                const std::uint32_t place = candidate.contact;
+                if (place != none
+                        ? acc.inLanes[place] != 0
+                        : !overlaps(acc.tight[candidate.pair.a], acc.tight[candidate.pair.b])) {
+                    continue;
+                }
+                const std::uint8_t a = activity[acc.shapes.proxies[candidate.pair.a].body];
+                const std::uint8_t b = activity[acc.shapes.proxies[candidate.pair.b].body];
                 // What sleeps from its start is looked at once, so that its islands are known.
-                if (!isActive(both) && (both & newToSleep) == 0) continue;
+                if (!isActive(a | b) && ((a | b) & newToSleep) == 0) continue;
                 if (anyAsleep) {
                     if (looked[i]) continue;
                     looked[i] = 1;
                 }
-                const bool touched = contact.pointCount > 0;
-                const ContactUpdate update = updateContact(contact, in);
-                const bool touching = contact.pointCount > 0;
-                mine.pairs += update != ContactUpdate::Apart;
-                mine.recycled += update == ContactUpdate::Recycled;
-                accelerators.recycled[i] = update == ContactUpdate::Recycled;
-                if (touched != touching) mine.changed.push_back(i);
-                mine.disturbs |= touching && isActive(both) && isAsleep(both);
+                if (place != none) {
+                    lookAt(place, updateContact(acc.contacts[place], in), mine);
+                } else if (std::optional<Contact> begun =
+                               newContact(candidate.pair, acc.shapes, state, in)) {
+                    mine.disturbs |= isActive(a | b) && isAsleep(a | b);
+                    mine.begun.emplace_back(i, *begun);
+                }
             }
         });
-        bool disturbs = false;
-        for (const Findings& f : findings) {
-            report.pairs += f.pairs;
-            report.recycled += f.recycled;
-            disturbs |= f.disturbs;
-            for (const std::uint32_t i : f.changed) {
-                const Contact& contact = accelerators.contacts[i];
-                (contact.pointCount > 0 ? events.begins : events.ends)
-                    .push_back({contact.state.shapeA, contact.state.shapeB});
-            }
-        }
+        collect(findings);
         woke = anyAsleep && wakeTouched(disturbs);
+        disturbs = false;
     } while (woke);
+    report.pairs = static_cast<std::uint32_t>(count);
     std::sort(events.begins.begin(), events.begins.end(), keyBefore<ContactChange>);
     std::sort(events.ends.begin(), events.ends.end(), keyBefore<ContactChange>);
 }

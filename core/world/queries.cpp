@@ -57,29 +57,30 @@ std::vector<ContactView> World::contactViews() const {
     const Accelerators& acc = d.accelerators;
     std::vector<int> colours(acc.contacts.size(), -1);
     const Plan& plan = acc.plan;
-    for (std::size_t i = plan.jointLinks; i < plan.links.size() && acc.planValid; ++i) {
+    for (std::size_t i = plan.jointLinks; i < plan.links.size() && acc.rowsHold; ++i) {
         const std::uint8_t colour = plan.colourOfLink[i];
-        const std::uint32_t contact = plan.links[i].source;
-        if (contact < colours.size()) colours[contact] = isSerial(colour) ? 255 : colour;
+        colours[plan.links[i].source] = isSerial(colour) ? 255 : colour;
     }
-    for (std::size_t i = 0; i < acc.contacts.size(); ++i) {
-        const Contact& c = acc.contacts[i];
-        if (c.pointCount == 0) continue;
+    auto impulses = d.state.contacts.begin();  // in the order of those candidates that touch
+    for (const Candidate& candidate : acc.candidates) {
+        if (candidate.contact == none) continue;
+        const Contact& c = acc.contacts[candidate.contact];
         const Pose a = d.state.motions[c.bodyA].pose();
         const Pose b = d.state.motions[c.bodyB].pose();
         ContactView view;
-        view.shapeA = c.state.shapeA;
-        view.shapeB = c.state.shapeB;
-        view.normal = c.normal;
+        view.shapeA = c.shapeA;
+        view.shapeB = c.shapeB;
+        view.normal = c.normal();
         view.pointCount = c.pointCount;
-        view.colour = colours[i];
+        view.colour = colours[candidate.contact];
         for (std::size_t k = 0; k < c.pointCount; ++k) {
-            const Vec2 onA = a.p + rotate(relative(c.rotationA, a.q), c.anchorA[k]);
-            const Vec2 onB = b.p + rotate(relative(c.rotationB, b.q), c.anchorB[k]);
+            const Vec2 onA = a.p + rotate(relative(c.rotationA(), a.q), c.anchorA(k));
+            const Vec2 onB = b.p + rotate(relative(c.rotationB(), b.q), c.anchorB(k));
             view.point[k] = 0.5f * (onA + onB);
-            view.separation[k] = c.separation[k] + dot(view.normal, onB - onA);
-            view.normalImpulse[k] = c.state.normalImpulse[k];
+            view.separation[k] = c.points[k].madeSeparation + dot(view.normal, onB - onA);
+            view.normalImpulse[k] = impulses->normalImpulse[k];
         }
+        ++impulses;
         views.push_back(view);
     }
     return views;

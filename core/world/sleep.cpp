@@ -33,7 +33,7 @@ bool World::Data::wakeTouched(bool contactDisturbs) {
     std::vector<Link> links;
     for (const ConstraintPlaces& j : shapes.jointBodies) links.push_back({j.a, j.b, 0});
     for (const Contact& c : accelerators.contacts) {
-        if (c.pointCount > 0) links.push_back({c.bodyA, c.bodyB, 0});
+        if (c.pointCount > 0) links.push_back({c.bodyA, c.bodyB, 0});  // in any order
     }
     UnionFind sets;
     findIslands(links, dynamic, sets);
@@ -49,7 +49,7 @@ bool World::Data::wakeTouched(bool contactDisturbs) {
         if (!isAsleep(activity[body]) || !wakes[sets.find(body)]) continue;
         wake(body);
         activity[body] = movesNow;
-        accelerators.lastActive.push_back(body);
+        accelerators.linksStale = true;
         woke = true;
     }
     return woke;

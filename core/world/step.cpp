@@ -13,7 +13,7 @@ namespace {
 // A scene of fewer shapes and joints is stepped by the caller alone: waking a second thread and
 // meeting it at barriers costs more than it saves. Definitions alone decide.
 constexpr std::size_t parallelFrom = 512;
-constexpr std::uint32_t shapeGrain = 512;
+constexpr std::uint32_t bodyGrain = 256;
 constexpr float travelTicks = 2.0f;  // how far ahead fat bounds look
 
 }  // namespace
@@ -33,10 +33,10 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     findPairs(executor);  // motions → bounds, candidate pairs by key
     timer.done(Stage::Pairs);
 
-    collideAll(executor);  // motions, hulls → manifolds, matched impulses
+    collideAll(with.simd, executor);  // motions, hulls → manifolds, matched impulses
     timer.done(Stage::Collide);
 
-    updatePlan();  // contacts, joints → islands, batches, colours
+    updatePlan(executor);  // contacts, joints → islands, batches, colours
     timer.done(Stage::Colour);
 
     const SolverWorld world{state.bodies,
@@ -47,9 +47,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
                             accelerators.shapes.jointBodies,
                             state.jointImpulses,
                             accelerators.contacts,
-                            accelerators.rowsHold
-                                ? std::span<const std::uint8_t>(accelerators.recycled)
-                                : std::span<const std::uint8_t>(),
+                            accelerators.rowsHold,
                             state.info().gravity,
                             state.info().stepSeconds,
                             state.info().substeps};
@@ -92,78 +90,92 @@ std::uint8_t activityOf(const BodyInfo& info, const BodyMotion& motion) {
 void World::Data::findPairs(Executor* executor) {
     Accelerators& acc = accelerators;
     const Shapes& shapes = acc.shapes;
-    const bool fresh = acc.tight.size() != shapes.hulls.size();
+    const bool fresh = !acc.candidatesValid;  // nobody has looked yet
+    if (fresh) activity.assign(state.bodies.size(), restsNow);
     acc.tight.resize(shapes.hulls.size());
     acc.travel.resize(shapes.hulls.size());
-    activity.resize(state.bodies.size());
-    anyAsleep = false;
 
     // Bodies that may have moved since the last look: those that take part now or did last time.
-    std::vector<std::uint32_t> bodies = std::move(acc.lastActive);
-    acc.lastActive.clear();
-    if (fresh) bodies.clear();
-    std::vector<std::uint8_t> known(state.bodies.size(), 0);
-    for (const std::uint32_t body : bodies) known[body] = 1;
-    for (std::uint32_t body = 0; body < state.bodies.size(); ++body) {
-        activity[body] = activityOf(state.bodies[body], state.motions[body]);
-        anyAsleep = anyAsleep || isAsleep(activity[body]);
-        if (isActive(activity[body])) acc.lastActive.push_back(body);
-        if (fresh || (isActive(activity[body]) && !known[body])) bodies.push_back(body);
-    }
-    std::sort(bodies.begin(), bodies.end());
-
-    std::vector<std::uint32_t> active;
-    for (const std::uint32_t body : bodies) {
-        for (std::uint32_t s = shapes.first[body]; s < shapes.first[body + 1]; ++s) {
-            if (!shapes.proxies[s].alone) active.push_back(s);
-        }
-    }
+    struct Findings {
+        std::vector<std::uint32_t> left;  // shapes that have left their fat box
+        bool anyAsleep = false;
+        bool othersMove = false;
+    };
     const float ahead = travelTicks * state.info().stepSeconds;
-    overRange(executor, active.size(), shapeGrain, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const std::uint32_t s = active[i];
-            const BodyMotion& motion = state.motions[shapes.proxies[s].body];
-            acc.tight[s] =
-                grown(boundsOf(shapes.hulls[s], motion.pose()), 0.5f * speculativeDistance);
-            acc.travel[s] = ahead * motion.velocity;
-        }
-    });
-    const bool changed = acc.broadPhase.update(acc.tight, acc.travel, active, shapes.proxies,
+    auto findings = perBlock<Findings>(state.bodies.size(), bodyGrain);
+    overRange(
+        executor, state.bodies.size(), bodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+            Findings& mine = findings[begin / bodyGrain];
+            for (std::uint32_t body = begin; body < end; ++body) {
+                const BodyMotion& motion = state.motions[body];
+                const std::uint8_t before = activity[body];
+                const std::uint8_t now = activityOf(state.bodies[body], motion);
+                activity[body] = now;
+                mine.anyAsleep |= isAsleep(now);
+                mine.othersMove |= (now == movesNow) != (before == movesNow);
+                if (!fresh && !isActive(before | now)) continue;
+                for (std::uint32_t s = shapes.first[body]; s < shapes.first[body + 1]; ++s) {
+                    if (shapes.proxies[s].alone) continue;
+                    acc.tight[s] =
+                        grown(boundsOf(shapes.hulls[s], motion.pose()), 0.5f * speculativeDistance);
+                    acc.travel[s] = ahead * motion.velocity;
+                    if (!fresh && !acc.broadPhase.holds(s, acc.tight[s])) mine.left.push_back(s);
+                }
+            }
+        });
+    std::vector<std::uint32_t> left;
+    anyAsleep = false;
+    for (const Findings& f : findings) {
+        left.insert(left.end(), f.left.begin(), f.left.end());
+        anyAsleep |= f.anyAsleep;
+        acc.linksStale |= f.othersMove;
+    }
+    const bool changed = acc.broadPhase.update(acc.tight, acc.travel, left, shapes.proxies,
                                                shapes.forbidden, executor);
-    if (changed || fresh) layOutContacts();
+    if (changed || fresh) layOutCandidates();
 }
 
-void World::Data::updatePlan() {
+/// Makes the plan again where contacts, joints or who moves have changed; otherwise plan and rows
+/// stay, but for the rows of new manifolds.
+void World::Data::updatePlan(Executor* executor) {
     Accelerators& acc = accelerators;
-    std::vector<Link> links;
-    links.reserve(acc.plan.links.size());
-    const auto moves = [&](std::uint32_t body) { return activity[body] == movesNow; };
-    for (std::uint32_t i = 0; i < acc.shapes.jointBodies.size(); ++i) {
-        const ConstraintPlaces& j = acc.shapes.jointBodies[i];
-        if (!moves(j.a) && !moves(j.b)) continue;
-        links.push_back({j.a, j.b, i, isPin(state.joints[i], state.jointImpulses[i])});
-    }
-    const auto jointLinks = static_cast<std::uint32_t>(links.size());
-    for (std::uint32_t i = 0; i < acc.contacts.size(); ++i) {
-        const Contact& c = acc.contacts[i];
-        if (c.pointCount == 0) continue;
-        ++report.contacts;
-        if (moves(c.bodyA) || moves(c.bodyB)) links.push_back({c.bodyA, c.bodyB, i});
-    }
-    std::vector<std::uint32_t> awake;
-    for (std::uint32_t body = 0; body < state.bodies.size(); ++body) {
-        if (moves(body)) awake.push_back(body);
-    }
     Plan& plan = acc.plan;
-    if (!acc.planValid || jointLinks != plan.jointLinks || links != plan.links ||
-        awake != plan.awake) {
+    if (acc.linksStale) {
+        if (acc.rowsHold) fetchImpulses(executor);
+        acc.rowsHold = false;
+        acc.linksStale = false;
+        std::vector<Link> links;
+        links.reserve(plan.links.size());
+        const auto moves = [&](std::uint32_t body) { return activity[body] == movesNow; };
+        for (std::uint32_t i = 0; i < acc.shapes.jointBodies.size(); ++i) {
+            const ConstraintPlaces& j = acc.shapes.jointBodies[i];
+            if (!moves(j.a) && !moves(j.b)) continue;
+            links.push_back({j.a, j.b, i, isPin(state.joints[i], state.jointImpulses[i])});
+        }
+        const auto jointLinks = static_cast<std::uint32_t>(links.size());
+        acc.inLanes.assign(acc.contacts.size(), 0);
+        for (const Candidate& candidate : acc.candidates) {
+            if (candidate.contact == none) continue;
+            const std::uint32_t a = acc.shapes.proxies[candidate.pair.a].body;
+            const std::uint32_t b = acc.shapes.proxies[candidate.pair.b].body;
+            if (!moves(a) && !moves(b)) continue;
+            links.push_back({a, b, candidate.contact});
+            acc.inLanes[candidate.contact] = 1;
+        }
+        std::vector<std::uint32_t> awake;
+        for (std::uint32_t body = 0; body < state.bodies.size(); ++body) {
+            if (moves(body)) awake.push_back(body);
+        }
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
                  static_cast<std::uint32_t>(state.bodies.size()));
-        acc.planValid = true;
-        acc.rowsHold = false;
+    } else {
+        for (const std::uint32_t lane : acc.freshLanes) {
+            acc.solver.writeRow(lane, acc.contacts[plan.contactOfLane[lane]]);
+        }
     }
+    report.contacts = static_cast<std::uint32_t>(acc.contacts.size() - acc.freeContacts.size());
     report.awakeBodies = static_cast<std::uint32_t>(plan.awake.size());
-    report.joints = jointLinks;
+    report.joints = plan.jointLinks;
     report.islands = plan.islands;
     report.batches = static_cast<std::uint32_t>(plan.batches.size());
     report.colours = plan.colours;

@@ -50,7 +50,7 @@ std::string_view nameOf(Stage stage);
 /// What the last step did: for people and charts, never state.
 struct StepReport {
     std::uint32_t awakeBodies = 0;
-    std::uint32_t pairs = 0;     ///< pairs of shapes whose bounds overlap
+    std::uint32_t pairs = 0;     ///< pairs of shapes near each other
     std::uint32_t contacts = 0;  ///< touching
     std::uint32_t recycled = 0;  ///< contacts whose manifold was kept
     std::uint32_t joints = 0;    ///< awake

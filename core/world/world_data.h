@@ -31,20 +31,28 @@ struct Shapes {
     std::vector<std::uint32_t> kinematic;       // places of kinematic bodies
 };
 
+/// A pair of shapes that are near each other.
+struct Candidate {
+    ShapePair pair;
+    std::uint32_t contact = none;  ///< place of its contact, or `none` while they do not touch
+};
+
 struct Accelerators {
     bool definitionsStale = true;  // `shapes` and all below must be made again
     Shapes shapes;
     std::vector<Bounds> tight;  // by shape, grown by half the speculative margin
     std::vector<Vec2> travel;   // by shape
     BroadPhase broadPhase;
-    std::vector<Contact> contacts;          // candidate pairs, by key; holds the contacts' state
-    std::vector<Contact> contactScratch;    // of layOutContacts; means nothing outside
-    bool contactsValid = false;             // else they are to be read from `state.contacts`
-    std::vector<std::uint32_t> lastActive;  // bodies that may have moved in the last step
+    std::vector<Candidate> candidates;        // by key; those with a contact are the world's
+    std::vector<Candidate> candidateScratch;  // of layOutCandidates; means nothing outside
+    bool candidatesValid = false;             // else contacts are to be read from `state.contacts`
+    std::vector<Contact> contacts;            // touching; places are kept while they touch
+    std::vector<std::uint32_t> freeContacts;  // places of `contacts` that none has
+    std::vector<std::uint8_t> inLanes;        // by contact: whether the solver's rows hold it
     Plan plan;
-    bool planValid = false;
-    std::vector<std::uint8_t> recycled;  // by contact: whether its manifold is the last step's
-    bool rowsHold = false;  // the solver's rows are those of this plan and these contacts
+    bool linksStale = true;  // contacts, joints or who moves may differ from the plan's
+    bool rowsHold = false;   // the solver's contact rows are those of this plan
+    std::vector<std::uint32_t> freshLanes;  // lanes whose contact has a new manifold
     SoftStep solver;
 };
 
@@ -59,7 +67,7 @@ constexpr bool isAsleep(std::uint8_t activity) {
 }
 
 struct World::Data {
-    // The step works on `accelerators.contacts`. `state.contacts` is current only while
+    // The step works on the contacts of `accelerators`. `state.contacts` is current only while
     // `contactsInState`: whoever reads it, or throws the accelerators away, copies it there first.
     mutable WorldState state;
     mutable bool contactsInState = true;
@@ -108,9 +116,14 @@ struct World::Data {
     // step.cpp
     void step(std::span<const Command> commands, const StepResources& with);
     void findPairs(Executor* executor);
-    void layOutContacts();
-    void collideAll(Executor* executor);
-    void updatePlan();
+    void updatePlan(Executor* executor);
+
+    // contacts.cpp
+    void layOutCandidates();
+    std::uint32_t addContact(const Contact& contact);
+    void dropContact(std::uint32_t contact);
+    void collideAll(Simd simd, Executor* executor);
+    void fetchImpulses(Executor* executor);
     bool wakeTouched(bool contactDisturbs);
     void settleIslands();
 

@@ -25,11 +25,11 @@ struct Scatter {
 
     bool update(BroadPhase& phase, std::span<const std::uint32_t> active,
                 Executor* executor = nullptr) const {
-        std::vector<std::uint32_t> watched;
+        std::vector<std::uint32_t> left;
         for (const std::uint32_t i : active) {
-            if (!proxies[i].alone) watched.push_back(i);
+            if (!proxies[i].alone && !phase.holds(i, tight[i])) left.push_back(i);
         }
-        return phase.update(tight, travel, watched, proxies, forbidden, executor);
+        return phase.update(tight, travel, left, proxies, forbidden, executor);
     }
 
     [[nodiscard]] bool may(std::uint32_t a, std::uint32_t b) const {

@@ -6,8 +6,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
-#include "tests/core/support.h"
+#include "core/contact/narrow_phase.h"
+#include "core/math/trig.h"
+#include "tests/core/hulls.h"
 
 namespace huestep::test {
 namespace {
@@ -107,6 +110,144 @@ ContactPass passOf(Random& random) {
     pass.pushSpeed = 3.0f;
     pass.features = {random.once(2), random.once(2), random.once(2), random.once(2)};
     return pass;
+}
+
+TEST(ContactKernels, KeepTheManifoldsThatTheNarrowPhaseKeeps) {
+    Random random(114);
+    SCOPED_TRACE(random.trace());
+    constexpr std::uint32_t pairs = 64;
+    std::uint32_t kept = 0, others = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        std::vector<Hull> hulls;
+        std::vector<BodyMotion> motions(2 * pairs);
+        std::vector<Bounds> bounds(2 * pairs);
+        std::vector<Contact> contacts(pairs);
+        for (std::uint32_t i = 0; i < pairs; ++i) {
+            for (std::uint32_t k = 0; k < 2; ++k) {
+                hulls.push_back(hullOfDef<float>(randomShapeDef(random)));
+            }
+            Contact& c = contacts[i];
+            c.bodyA = c.placeA = 2 * i;
+            c.bodyB = c.placeB = 2 * i + 1;
+            c.slack = random.betweenF(0.0, 0.05);
+            c.row.reach = random.betweenF(0.0, 1.0);
+            c.row.roundness = std::max(hulls[2 * i].radius, hulls[2 * i + 1].radius);
+            motions[2 * i].position = random.point(-50.0, 50.0);
+            motions[2 * i].rotation = rotationOf(random.betweenF(-3.1, 3.1));
+            motions[2 * i + 1].position = motions[2 * i].position + random.point(-1.2, 1.2);
+            motions[2 * i + 1].rotation = rotationOf(random.betweenF(-3.1, 3.1));
+        }
+        const auto look = [&] {
+            for (std::uint32_t i = 0; i < 2 * pairs; ++i) {
+                bounds[i] =
+                    grown(boundsOf(hulls[i], motions[i].pose()), 0.5f * speculativeDistance);
+            }
+            return NarrowPhaseInput{motions, hulls, bounds};
+        };
+        NarrowPhaseInput in = look();
+        for (Contact& c : contacts) renewContact(c, in);
+        // Apart from each other a little, and all together anywhere.
+        for (std::uint32_t i = 0; i < pairs; ++i) {
+            const Rotation turn = rotationOf(random.betweenF(-0.25, 0.25));
+            const Vec2 far = random.point(-5.0, 5.0);
+            for (std::uint32_t k = 0; k < 2; ++k) {
+                BodyMotion& m = motions[2 * i + k];
+                m.position = rotate(turn, m.position) + far + random.point(-0.02, 0.02);
+                m.rotation = normalized(
+                    compose(compose(turn, rotationOf(random.betweenF(-0.02, 0.02))), m.rotation));
+            }
+        }
+        in = look();
+        std::vector<ContactBlock> blocks(pairs / blockLanes);
+        for (ContactBlock& block : blocks) std::memset(static_cast<void*>(&block), 0, sizeof block);
+        for (std::uint32_t i = 0; i < pairs; ++i) {
+            ContactBlock& block = blocks[i / blockLanes];
+            const std::uint32_t lane = i % blockLanes;
+            const ContactFields<float>& row = contacts[i].row;
+            block.motionA[lane] = block.boundsA[lane] = static_cast<std::int32_t>(2 * i);
+            block.motionB[lane] = block.boundsB[lane] = static_cast<std::int32_t>(2 * i + 1);
+            block.cosineA[lane] = row.cosineA;
+            block.sineA[lane] = row.sineA;
+            block.cosineB[lane] = row.cosineB;
+            block.sineB[lane] = row.sineB;
+            block.relativeX[lane] = row.relativeX;
+            block.relativeY[lane] = row.relativeY;
+            block.relativeC[lane] = row.relativeC;
+            block.relativeS[lane] = row.relativeS;
+            block.reach[lane] = row.reach;
+            block.roundness[lane] = row.roundness;
+            block.slack[lane] = row.slack;
+        }
+        for (const Simd simd : availableSimd()) {
+            std::vector<ContactBlock> rows = blocks;
+            contactKernels(simd).check(motions.data(), bounds.data(), rows.data(),
+                                       static_cast<std::uint32_t>(rows.size()));
+            for (std::uint32_t i = 0; i < pairs; ++i) {
+                if (contacts[i].pointCount == 0) continue;
+                Contact alone = contacts[i];
+                const bool stays = updateContact(alone, in) == ContactUpdate::Recycled;
+                ASSERT_EQ(rows[i / blockLanes].kept[i % blockLanes], stays ? -1 : 0)
+                    << nameOf(simd) << " lane " << i << " of trial " << trial;
+                ++(stays ? kept : others);
+            }
+        }
+    }
+    EXPECT_GT(kept, 1'000u);
+    EXPECT_GT(others, 1'000u);
+}
+
+TEST(ContactKernels, SettleImpulsesAsStateHoldsThemAndMarkHits) {
+    Random random(115);
+    SCOPED_TRACE(random.trace());
+    const float inf = std::numeric_limits<float>::infinity();
+    const float odd[] = {inf, -inf, std::numeric_limits<float>::quiet_NaN(), -0.0f, 1e-42f};
+    for (int trial = 0; trial < 200; ++trial) {
+        Rows start = randomRows(random);
+        for (ContactBlock& block : start.blocks) {
+            for (int lane = 0; lane < blockLanes; ++lane) {
+                if (random.once(3)) block.rollingImpulse[lane] = odd[random.below(5)];
+                for (ContactPointRows& p : block.points) {
+                    if (random.once(3)) p.normalImpulse[lane] = odd[random.below(5)];
+                    if (random.once(3)) p.tangentImpulse[lane] = odd[random.below(5)];
+                }
+            }
+        }
+        for (const Simd simd : availableSimd()) {
+            Rows rows = start;
+            bool any = false;
+            for (std::size_t b = 0; b < rows.blocks.size(); ++b) {
+                const ContactBlock& was = start.blocks[b];
+                for (int lane = 0; lane < blockLanes; ++lane) {
+                    for (const ContactPointRows& p : was.points) {
+                        any = any || (p.approach[lane] < -1.0f && p.maxNormalImpulse[lane] > 0.0f);
+                    }
+                }
+            }
+            ASSERT_EQ(contactKernels(simd).settle(rows.blocks.data(),
+                                                  static_cast<std::uint32_t>(rows.blocks.size())),
+                      any);
+            for (std::size_t b = 0; b < rows.blocks.size(); ++b) {
+                const ContactBlock& was = start.blocks[b];
+                const ContactBlock& is = rows.blocks[b];
+                const auto fits = [](float before, float after) {
+                    const float whole = std::isfinite(before) ? before : 0.0f;
+                    return after == whole && (after != 0.0f || !std::signbit(after));
+                };
+                for (int lane = 0; lane < blockLanes; ++lane) {
+                    ASSERT_TRUE(fits(was.rollingImpulse[lane], is.rollingImpulse[lane]));
+                    bool hit = false;
+                    for (std::size_t i = 0; i < 2; ++i) {
+                        const ContactPointRows& p = was.points[i];
+                        ASSERT_TRUE(fits(p.normalImpulse[lane], is.points[i].normalImpulse[lane]));
+                        ASSERT_TRUE(
+                            fits(p.tangentImpulse[lane], is.points[i].tangentImpulse[lane]));
+                        hit = hit || (p.approach[lane] < -1.0f && p.maxNormalImpulse[lane] > 0.0f);
+                    }
+                    ASSERT_EQ(is.hit[lane], hit ? -1 : 0);
+                }
+            }
+        }
+    }
 }
 
 TEST(ContactKernels, OfEveryWidthGiveTheBitsOfTheScalarOnes) {
