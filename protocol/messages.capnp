@@ -132,6 +132,17 @@ struct Command {
       }
       angularVelocity @31 :Float32;   # rad/s
     }
+    setTarget :group {                # where a kinematic body is after this tick; host only
+      body @32 :UInt32;
+      position :group {               # m, of the body's origin, in the world
+        x @33 :Float32;
+        y @34 :Float32;
+      }
+      rotation :group {               # cosine and sine of its angle
+        c @35 :Float32;
+        s @36 :Float32;
+      }
+    }
   }
 }
 

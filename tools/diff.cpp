@@ -29,8 +29,9 @@ Finding compareWorlds(const World& left, const World& right) {
 
 std::string describe(const Command& command) {
     static constexpr const char* names[] = {
-        "AddPlayer", "RemovePlayer", "ApplyImpulse", "ApplyForce",  "Grab",     "MoveGrab",
-        "Release",   "Spawn",        "RemoveBody",   "RemoveJoint", "SetMotor", "SetVelocity"};
+        "AddPlayer", "RemovePlayer", "ApplyImpulse", "ApplyForce", "Grab",
+        "MoveGrab",  "Release",      "Spawn",        "RemoveBody", "RemoveJoint",
+        "SetMotor",  "SetVelocity",  "SetTarget"};
     static_assert(std::size(names) == std::variant_size_v<huestep::Action>);
     return std::string(names[command.action.index()]) + " of author " +
            std::to_string(command.author) + ", sequence " + std::to_string(command.sequence);

@@ -99,8 +99,19 @@ struct SetVelocity {
     friend bool operator==(const SetVelocity&, const SetVelocity&) = default;
 };
 
-using Action = std::variant<AddPlayer, RemovePlayer, ApplyImpulse, ApplyForce, Grab, MoveGrab,
-                            Release, Spawn, RemoveBody, RemoveJoint, SetMotor, SetVelocity>;
+/// Gives a kinematic body the velocity that brings it to a pose in this tick, by the shorter way
+/// round; half a turn goes counter-clockwise. It keeps that velocity until told otherwise: to stop
+/// there it needs a `SetVelocity`, or the same target again, in the next tick. Host only.
+struct SetTarget {
+    BodyId body = 0;
+    Vec2 position;      ///< m, of the body's origin, in the world
+    Rotation rotation;  ///< (cos θ, sin θ), as in `BodyDef`
+    friend bool operator==(const SetTarget&, const SetTarget&) = default;
+};
+
+using Action =
+    std::variant<AddPlayer, RemovePlayer, ApplyImpulse, ApplyForce, Grab, MoveGrab, Release, Spawn,
+                 RemoveBody, RemoveJoint, SetMotor, SetVelocity, SetTarget>;
 
 /// One action of one author. `sequence` counts the author's commands from 1; a world remembers
 /// the last one applied or rejected per author as state and rejects what is not above it, so a
@@ -129,7 +140,7 @@ enum class Rejection : std::uint16_t {
     NothingGrabbed,
     NoMotor,  ///< the joint has no motor that the scene enabled
     PlayerExists,
-    TooFar,      ///< a point that is not on or near the body
+    TooFar,      ///< a point not on or near the body, or a target beyond a tick at the top speed
     TooCrowded,  ///< a spawned shape would overlap too many others
 };
 

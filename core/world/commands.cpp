@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "core/math/finite.h"
+#include "core/math/trig.h"
+#include "core/scene/in_double.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
@@ -296,6 +298,32 @@ class Applier {
         BodyMotion& motion = m_state.motions[*place];
         motion.velocity = canonicalZero(action.velocity);
         motion.angularVelocity = canonicalZero(action.angularVelocity);
+        return Rejection::None;
+    }
+
+    Rejection apply(const SetTarget& action) {
+        if (!host()) return Rejection::NotAllowed;
+        const RotationT<double> target = inDouble(action.rotation);
+        const double square = target.c * target.c + target.s * target.s;
+        const double off = square - 1.0;
+        const auto tolerance = static_cast<double>(caps::rotationTolerance);
+        if (!inWorld(action.position) || !(off >= -tolerance && off <= tolerance)) {
+            return Rejection::NotFinite;
+        }
+        const auto place = m_world.findBody(action.body);
+        if (!place) return Rejection::UnknownBody;
+        if (m_state.bodies[*place].type() != BodyType::Kinematic) return Rejection::WrongBodyType;
+        // In double, as the step rounds once itself: the body ends within a rounding or two.
+        BodyMotion& motion = m_state.motions[*place];
+        const double perSecond = 1.0 / static_cast<double>(m_state.info().stepSeconds);
+        const Vec2T<double> way = inDouble(action.position) - inDouble(motion.position);
+        const double turn = angleOf(relative(inDouble(motion.rotation), target));
+        const Vec2 velocity{static_cast<float>(perSecond * way.x),
+                            static_cast<float>(perSecond * way.y)};
+        const auto spin = static_cast<float>(perSecond * turn);
+        if (!slow(velocity.x) || !slow(velocity.y) || !slow(spin)) return Rejection::TooFar;
+        motion.velocity = canonicalZero(velocity);
+        motion.angularVelocity = canonicalZero(spin);
         return Rejection::None;
     }
 

@@ -79,6 +79,13 @@ void put(Out to, const SetVelocity& action) {
     velocity.setAngularVelocity(action.angularVelocity);
 }
 
+void put(Out to, const SetTarget& action) {
+    auto target = to.initSetTarget();
+    target.setBody(action.body);
+    putPoint(target.getPosition(), action.position);
+    putRotation(target.getRotation(), action.rotation);
+}
+
 Action readApplyImpulse(Reading& in, schema::Command::Action::ApplyImpulse::Reader from) {
     return ApplyImpulse{from.getBody(), in.point("impulse", from.getImpulse()),
                         in.point("point", from.getPoint())};
@@ -104,6 +111,11 @@ Action readSpawn(Reading& in, schema::Spawn::Reader from) {
 Action readSetVelocity(Reading& in, schema::Command::Action::SetVelocity::Reader from) {
     return SetVelocity{from.getBody(), in.point("velocity", from.getVelocity()),
                        in.real("angularVelocity", from.getAngularVelocity())};
+}
+
+Action readSetTarget(Reading& in, schema::Command::Action::SetTarget::Reader from) {
+    return SetTarget{from.getBody(), in.point("position", from.getPosition()),
+                     in.rotation("rotation", from.getRotation())};
 }
 
 Action readAction(Reading& in, From from) {
@@ -140,6 +152,8 @@ Action readAction(Reading& in, From from) {
             });
         case Which::SET_VELOCITY:
             return in.at("setVelocity", [&] { return readSetVelocity(in, from.getSetVelocity()); });
+        case Which::SET_TARGET:
+            return in.at("setTarget", [&] { return readSetTarget(in, from.getSetTarget()); });
     }
     in.refuse("unknown action " + std::to_string(static_cast<unsigned>(from.which())));
 }

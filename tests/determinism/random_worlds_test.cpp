@@ -110,7 +110,7 @@ Action randomAction(Random& random, const World& world) {
     const JointId joint = 1 + random.below(world.info().nextJoint + 1);
     const auto at = world.find(body);
     const Vec2 point = at ? world.motions()[*at].position : random.point(-5.0, 5.0);
-    switch (random.below(12)) {
+    switch (random.below(13)) {
         case 0:
             return AddPlayer{1 + random.below(5)};
         case 1:
@@ -141,8 +141,10 @@ Action randomAction(Random& random, const World& world) {
             return RemoveJoint{joint};
         case 10:
             return SetMotor{joint, random.once(2), random.betweenF(-5.0, 5.0)};
-        default:
+        case 11:
             return SetVelocity{body, random.point(-2.0, 2.0), random.betweenF(-2.0, 2.0)};
+        default:
+            return SetTarget{body, random.point(-5.0, 8.0), rotationOf(random.betweenF(-3.0, 3.0))};
     }
 }
 

@@ -25,16 +25,25 @@ std::span<const std::byte> bytesOf(const std::string& text) {
     return std::as_bytes(std::span(text.data(), text.size()));
 }
 
+/// A message's payload behind a word that names its type; gives back the whole frame.
+std::vector<std::byte> savePayload(const fs::path& path, const Message& message) {
+    auto frame = encode(message);
+    std::vector<std::byte> payload(8);
+    payload[0] = static_cast<std::byte>(typeOf(message));
+    payload.insert(payload.end(), frame.begin() + headerBytes, frame.end());
+    save(path, payload);
+    return frame;
+}
+
 void saveFrames(const fs::path& folder) {
     std::vector<std::byte> stream;
     for (const Message& message : samples::sampleMessages()) {
-        const auto frame = encode(message);
+        const std::string name = "payload-" + std::string(nameOf(typeOf(message)));
+        const auto frame = savePayload(folder / name, message);
         stream.insert(stream.end(), frame.begin(), frame.end());
-        std::vector<std::byte> payload(8);
-        payload[0] = static_cast<std::byte>(typeOf(message));
-        payload.insert(payload.end(), frame.begin() + headerBytes, frame.end());
-        save(folder / ("payload-" + std::string(nameOf(typeOf(message)))), payload);
     }
+    const Command target{0, 15, SetTarget{2, {1.0f, -2.0f}, {0.6f, 0.8f}}};
+    savePayload(folder / "payload-Frame-SetTarget", Frame{601, {target}, {}, 1, 599});
     save(folder / "stream-of-all", stream);
     stream.resize(stream.size() - 5);
     save(folder / "stream-cut-short", stream);

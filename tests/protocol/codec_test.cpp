@@ -366,6 +366,10 @@ TEST(CodecLimits, NumbersMustBeFinite) {
     frame.commands = {{0, 1, SetVelocity{1, {}, infinity}}};
     EXPECT_EQ(answerTo(frame),
               "Frame.commands[0].setVelocity.angularVelocity: not a finite number");
+    frame.commands = {{0, 1, SetTarget{1, {infinity, 0.0f}, {}}}};
+    EXPECT_EQ(answerTo(frame), "Frame.commands[0].setTarget.position.x: not a finite number");
+    frame.commands = {{0, 1, SetTarget{1, {}, {1.0f, -infinity}}}};
+    EXPECT_EQ(answerTo(frame), "Frame.commands[0].setTarget.rotation.s: not a finite number");
     View view;
     view.poses.resize(2);
     view.flags.resize(2);
@@ -400,9 +404,9 @@ TEST(CodecLimits, AnUnknownActionIsRefused) {
     std::vector<std::byte> payload(frame.begin() + headerBytes, frame.end());
     // The discriminant of `action` is at byte 16 of the command, which
     // follows root pointer, root struct (5 words) and the list's tag.
-    payload[8 * 7 + 16] = std::byte{12};
+    payload[8 * 7 + 16] = std::byte{13};
     EXPECT_EQ(reasonOf(decode(MessageType::Frame, payload)),
-              "Frame.commands[0]: unknown action 12");
+              "Frame.commands[0]: unknown action 13");
 }
 
 TEST(CodecLimits, Texts) {

@@ -221,9 +221,9 @@ TEST(Journal, BlocksLostFromTheLastBatchAreATornTailAndFromAnEarlierOneCorruptio
     JournalWriter writer = openWriter(store);
     std::vector<JournalEntry> written;
     std::vector<std::size_t> ends;
-    for (std::uint64_t tick = 0; tick < 40; tick += 20) {
+    for (std::uint64_t tick = 0; tick < 60; tick += 30) {
         std::vector<JournalEntry> batch;
-        for (std::uint64_t k = 0; k < 20; ++k) batch.push_back(frameOf(tick + k, draw));
+        for (std::uint64_t k = 0; k < 30; ++k) batch.push_back(frameOf(tick + k, draw));
         ASSERT_TRUE(writer.append(batch).ok());
         written.insert(written.end(), batch.begin(), batch.end());
         ends.push_back(static_cast<std::size_t>(writer.segmentBytes()));
@@ -243,8 +243,8 @@ TEST(Journal, BlocksLostFromTheLastBatchAreATornTailAndFromAnEarlierOneCorruptio
     const auto last = lose((ends[0] + ends[1]) / 1'024);
     ASSERT_TRUE(last.ok()) << last.error().message;
     EXPECT_GT(last->tornBytes, 0u);
-    EXPECT_GE(last->entries.size(), 20u);
-    EXPECT_LT(last->entries.size(), 40u);
+    EXPECT_GE(last->entries.size(), 30u);
+    EXPECT_LT(last->entries.size(), 60u);
     EXPECT_TRUE(isPrefix(last->entries, written, last->entries.size()));
 }
 

@@ -139,8 +139,10 @@ inline Action randomAction(Draw& draw, std::size_t kind) {
             return RemoveJoint{draw.word()};
         case 10:
             return SetMotor{draw.word(), draw.coin(), draw.real()};
-        default:
+        case 11:
             return SetVelocity{draw.word(), draw.point(), draw.real()};
+        default:
+            return SetTarget{draw.word(), draw.point(), {draw.real(), draw.real()}};
     }
 }
 inline constexpr std::size_t actionKinds = std::variant_size_v<Action>;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "tests/core/support.h"
 
@@ -176,6 +177,44 @@ TEST(Commands, AKinematicBodyMovesAsItIsTold) {
     EXPECT_NEAR(wide(motionOf(desk.world, fanId).position.x - start.position.x), 3.0, 1e-4);
 }
 
+TEST(Commands, AKinematicBodyIsWhereItsTargetIsAfterTheTick) {
+    Random random(17);
+    SCOPED_TRACE(random.trace());
+    Desk desk(playground());
+    for (int k = 0; k < 200; ++k) {
+        const Vec2 to = random.point(-50.0, 50.0);
+        const double angle = random.between(-3.14, 3.14);
+        const Rotation q{static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+        const BodyMotion before = motionOf(desk.world, fanId);
+        ASSERT_EQ(desk.ask(0, SetTarget{fanId, to, q}), Rejection::None);
+        const BodyMotion after = motionOf(desk.world, fanId);
+        const double reached = std::max(wide(length(to)), wide(length(before.position)));
+        EXPECT_NEAR(wide(after.position.x), wide(to.x), 1e-6 * reached);
+        EXPECT_NEAR(wide(after.position.y), wide(to.y), 1e-6 * reached);
+        EXPECT_NEAR(wide(after.rotation.c), std::cos(angle), 1e-6);
+        EXPECT_NEAR(wide(after.rotation.s), std::sin(angle), 1e-6);
+        // The shorter way round: never more than half a turn in a tick of 1/60 s.
+        const double turned =
+            std::remainder(angle - std::atan2(wide(before.rotation.s), wide(before.rotation.c)),
+                           2.0 * std::numbers::pi);
+        EXPECT_NEAR(wide(after.angularVelocity) / 60.0, turned, 1e-5);
+    }
+}
+
+TEST(Commands, ABodyThatReachedItsTargetGoesOnUntilItIsToldToStay) {
+    Desk desk(playground());
+    const Vec2 start = motionOf(desk.world, fanId).position;
+    const Vec2 to = start + Vec2{0.25f, 0.5f};
+    ASSERT_EQ(desk.ask(0, SetTarget{fanId, to, {}}), Rejection::None);
+    run(desk.world, 1);
+    const Vec2 on = motionOf(desk.world, fanId).position;
+    EXPECT_NEAR(wide(on.x - start.x), 0.5, 1e-5);
+    EXPECT_NEAR(wide(on.y - start.y), 1.0, 1e-5);
+    ASSERT_EQ(desk.ask(0, SetTarget{fanId, on, {}}), Rejection::None);
+    EXPECT_EQ(motionOf(desk.world, fanId).velocity, Vec2{});
+    EXPECT_EQ(motionOf(desk.world, fanId).position, on);
+}
+
 TEST(Commands, ARemovedJointLetsItsBodiesGo) {
     Desk desk(playground());
     const Vec2 before = motionOf(desk.world, discId).position;
@@ -207,6 +246,7 @@ TEST(Commands, AreRejectedForEveryReasonThereIs) {
     expect(Rejection::NotAllowed, 1, RemoveBody{own});
     expect(Rejection::NotAllowed, 1, RemoveJoint{plainId});
     expect(Rejection::NotAllowed, 1, SetVelocity{fanId, {}, 0.0f});
+    expect(Rejection::NotAllowed, 1, SetTarget{fanId, {}, {}});
     expect(Rejection::NotAllowed, 1, Spawn{{ground()}, {}});
     expect(Rejection::NotAllowed, 1,
            Spawn{{boxAt({}), boxAt({2.0f, 0.0f})}, {hinge(0, {}, 1, {})}});
@@ -217,6 +257,7 @@ TEST(Commands, AreRejectedForEveryReasonThereIs) {
     expect(Rejection::UnknownBody, 1, Grab{99, {}, {}});
     expect(Rejection::UnknownBody, 0, RemoveBody{99});
     expect(Rejection::UnknownBody, 0, SetVelocity{99, {}, 0.0f});
+    expect(Rejection::UnknownBody, 0, SetTarget{99, {}, {}});
     expect(Rejection::UnknownJoint, 0, RemoveJoint{99});
     expect(Rejection::UnknownJoint, 1, SetMotor{99, true, 0.0f});
 
@@ -224,6 +265,7 @@ TEST(Commands, AreRejectedForEveryReasonThereIs) {
     expect(Rejection::WrongBodyType, 1, ApplyForce{fanId, {}, {}});
     expect(Rejection::WrongBodyType, 1, Grab{groundId, {}, {}});
     expect(Rejection::WrongBodyType, 0, SetVelocity{boxId, {}, 0.0f});
+    expect(Rejection::WrongBodyType, 0, SetTarget{boxId, {}, {}});
 
     expect(Rejection::NotFinite, 1, ApplyImpulse{boxId, {nan, 0.0f}, {}});
     expect(Rejection::NotFinite, 1, ApplyImpulse{boxId, {}, {inf, 0.0f}});
@@ -235,6 +277,10 @@ TEST(Commands, AreRejectedForEveryReasonThereIs) {
     expect(Rejection::NotFinite, 1, SetMotor{motorId, true, nan});
     expect(Rejection::NotFinite, 0, SetVelocity{fanId, {nan, 0.0f}, 0.0f});
     expect(Rejection::NotFinite, 0, SetVelocity{fanId, {}, 2.0e5f});
+    expect(Rejection::NotFinite, 0, SetTarget{fanId, {2.0e6f, 0.0f}, {}});
+    expect(Rejection::NotFinite, 0, SetTarget{fanId, {0.0f, nan}, {}});
+    expect(Rejection::NotFinite, 0, SetTarget{fanId, {}, {nan, 0.0f}});
+    expect(Rejection::NotFinite, 0, SetTarget{fanId, {}, {0.5f, 0.5f}});
 
     expect(Rejection::TooStrong, 1, ApplyImpulse{boxId, {8.0f, 8.0f}, {}});
     expect(Rejection::TooStrong, 1, ApplyForce{boxId, {100.1f, 0.0f}, {}});
@@ -257,6 +303,7 @@ TEST(Commands, AreRejectedForEveryReasonThereIs) {
     expect(Rejection::TooFar, 1, ApplyImpulse{boxId, {1.0f, 0.0f}, {0.0f, 5.0f}});
     expect(Rejection::TooFar, 1, ApplyForce{boxId, {1.0f, 0.0f}, {2.0f, 3.0f}});
     expect(Rejection::TooFar, 1, Grab{boxId, {0.0f, 1.0f}, {}});
+    expect(Rejection::TooFar, 0, SetTarget{fanId, {2000.0f, 5.0f}, {}});
     BodyDef large = boxAt({}, 20.0f);
     expect(Rejection::NotAllowed, 1, Spawn{{large}, {}});
     large.shapes.assign(9, ShapeDef::circle({}, 0.5f));
