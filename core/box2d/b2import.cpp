@@ -38,10 +38,9 @@ bool onlyHoldsMice(const b2Body& body) {
     return true;
 }
 
-/// The inverse of b2LinearStiffness: k = m ω², d = 2 m ζ ω, with m the mass both bodies share.
-SpringDef springOf(float stiffness, float damping, const b2Body& a, const b2Body& b) {
-    const float massA = a.GetMass();
-    const float massB = b.GetMass();
+/// The inverse of b2LinearStiffness and b2AngularStiffness: k = m ω², d = 2 m ζ ω, with m the mass
+/// that both bodies share; angular: the moment of inertia, about the origins as there.
+SpringDef springOf(float stiffness, float damping, float massA, float massB) {
     const float mass =
         massA > 0.0f && massB > 0.0f ? massA * massB / (massA + massB) : std::max(massA, massB);
     if (!(mass > 0.0f) || !(stiffness > 0.0f)) return {true, 0.0f, 0.0f};
@@ -60,6 +59,8 @@ class Importer {
     void addRevolute(const b2RevoluteJoint& joint, JointDef def);
     void addDistance(const b2DistanceJoint& joint, JointDef def);
     void addMouse(const b2MouseJoint& joint, JointDef def);
+    void addWeld(const b2WeldJoint& joint, JointDef def);
+    void addPrismatic(const b2PrismaticJoint& joint, JointDef def);
 
     Scene m_scene;
     Notes m_notes;
@@ -167,6 +168,10 @@ void Importer::addJoint(const b2Joint& joint, const std::string& path) {
             return addDistance(static_cast<const b2DistanceJoint&>(joint), def);
         case e_mouseJoint:
             return addMouse(static_cast<const b2MouseJoint&>(joint), def);
+        case e_weldJoint:
+            return addWeld(static_cast<const b2WeldJoint&>(joint), def);
+        case e_prismaticJoint:
+            return addPrismatic(static_cast<const b2PrismaticJoint&>(joint), def);
         default:
             m_notes.add(path, "is a joint of a kind that Huestep does not have");
     }
@@ -198,8 +203,8 @@ void Importer::addDistance(const b2DistanceJoint& joint, JointDef def) {
     const bool springs = free && joint.GetStiffness() > 0.0f;
     const bool bounded = low > 2.0f * b2_linearSlop || high < caps::maxJointLength;
     if (springs) {
-        def.spring = springOf(joint.GetStiffness(), joint.GetDamping(), *source.GetBodyA(),
-                              *source.GetBodyB());
+        def.spring = springOf(joint.GetStiffness(), joint.GetDamping(),
+                              source.GetBodyA()->GetMass(), source.GetBodyB()->GetMass());
     }
     if (free && (bounded || !springs)) def.limit = {true, low, high};
     m_scene.joints.push_back(def);
@@ -212,8 +217,35 @@ void Importer::addMouse(const b2MouseJoint& joint, JointDef def) {
     def.target = fromB2(joint.GetTarget());
     def.maxForce = joint.GetMaxForce();
     // A mouse joint's spring carries body B alone.
-    def.spring =
-        springOf(joint.GetStiffness(), joint.GetDamping(), *source.GetBodyB(), *source.GetBodyA());
+    def.spring = springOf(joint.GetStiffness(), joint.GetDamping(), source.GetBodyB()->GetMass(),
+                          source.GetBodyA()->GetMass());
+    m_scene.joints.push_back(def);
+}
+
+void Importer::addWeld(const b2WeldJoint& joint, JointDef def) {
+    b2WeldJoint& source = const_cast<b2WeldJoint&>(joint);
+    def.kind = JointKind::Weld;
+    def.anchorA = fromB2(joint.GetLocalAnchorA());
+    def.anchorB = fromB2(joint.GetLocalAnchorB());
+    const b2Rot reference(joint.GetReferenceAngle());
+    def.reference = {reference.c, reference.s};
+    if (joint.GetStiffness() > 0.0f) {
+        def.spring = springOf(joint.GetStiffness(), joint.GetDamping(),
+                              source.GetBodyA()->GetInertia(), source.GetBodyB()->GetInertia());
+    }
+    m_scene.joints.push_back(def);
+}
+
+void Importer::addPrismatic(const b2PrismaticJoint& joint, JointDef def) {
+    def.kind = JointKind::Prismatic;
+    def.anchorA = fromB2(joint.GetLocalAnchorA());
+    def.anchorB = fromB2(joint.GetLocalAnchorB());
+    const b2Vec2& axis = joint.GetLocalAxisA();
+    def.axis = {axis.x, axis.y};
+    const b2Rot reference(joint.GetReferenceAngle());
+    def.reference = {reference.c, reference.s};
+    def.limit = {joint.IsLimitEnabled(), joint.GetLowerLimit(), joint.GetUpperLimit()};
+    def.motor = {joint.IsMotorEnabled(), joint.GetMotorSpeed(), joint.GetMaxMotorForce()};
     m_scene.joints.push_back(def);
 }
 

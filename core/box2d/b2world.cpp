@@ -124,6 +124,11 @@ class Builder {
     b2Joint* addRevolute(const JointDef& joint, const std::string& path);
     b2Joint* addDistance(const JointDef& joint, const std::string& path);
     b2Joint* addMouse(const JointDef& joint);
+    b2Joint* addWeld(const JointDef& joint);
+    b2Joint* addPrismatic(const JointDef& joint, const std::string& path);
+    [[nodiscard]] float referenceAngle(const JointDef& joint) const;
+    template <class Def>
+    Def jointDef(const JointDef& joint) const;
     void makeNoise();
     bool fail(const std::string& path, const std::string& sentence) {
         m_error = path + ": " + sentence;
@@ -317,22 +322,39 @@ void Builder::addJoint(std::size_t place) {
         case JointKind::Mouse:
             created = addMouse(joint);
             break;
+        case JointKind::Weld:
+            created = addWeld(joint);
+            break;
+        case JointKind::Prismatic:
+            created = addPrismatic(joint, path);
+            break;
     }
 }
 
-b2Joint* Builder::addRevolute(const JointDef& joint, const std::string& path) {
-    if (joint.spring.enabled) m_notes.add(path, "Box2D 2.4 has no spring on revolute joints");
-    b2RevoluteJointDef def;
+/// What the joints between two bodies have in common.
+template <class Def>
+Def Builder::jointDef(const JointDef& joint) const {
+    Def def;
     def.bodyA = m_bodies[joint.bodyA];
     def.bodyB = m_bodies[joint.bodyB];
     def.collideConnected = joint.collideConnected;
     def.localAnchorA = toB2(joint.anchorA);
     def.localAnchorB = toB2(joint.anchorB);
-    // Box2D's coordinate is the difference of its angles less this; ours that of the rotations.
+    return def;
+}
+
+/// Box2D's coordinate is the difference of its angles less this; ours that of the rotations.
+float Builder::referenceAngle(const JointDef& joint) const {
     const Rotation between =
         relative(m_scene.bodies[joint.bodyA].rotation, m_scene.bodies[joint.bodyB].rotation);
-    def.referenceAngle =
-        def.bodyB->GetAngle() - def.bodyA->GetAngle() - angleOf(relative(joint.reference, between));
+    return m_bodies[joint.bodyB]->GetAngle() - m_bodies[joint.bodyA]->GetAngle() -
+           angleOf(relative(joint.reference, between));
+}
+
+b2Joint* Builder::addRevolute(const JointDef& joint, const std::string& path) {
+    if (joint.spring.enabled) m_notes.add(path, "Box2D 2.4 has no spring on revolute joints");
+    auto def = jointDef<b2RevoluteJointDef>(joint);
+    def.referenceAngle = referenceAngle(joint);
     def.enableLimit = joint.limit.enabled;
     def.lowerAngle = joint.limit.lower;
     def.upperAngle = joint.limit.upper;
@@ -344,12 +366,7 @@ b2Joint* Builder::addRevolute(const JointDef& joint, const std::string& path) {
 
 b2Joint* Builder::addDistance(const JointDef& joint, const std::string& path) {
     if (joint.motor.enabled) m_notes.add(path, "Box2D 2.4 has no motor on distance joints");
-    b2DistanceJointDef def;
-    def.bodyA = m_bodies[joint.bodyA];
-    def.bodyB = m_bodies[joint.bodyB];
-    def.collideConnected = joint.collideConnected;
-    def.localAnchorA = toB2(joint.anchorA);
-    def.localAnchorB = toB2(joint.anchorB);
+    auto def = jointDef<b2DistanceJointDef>(joint);
     def.length = joint.length;
     def.minLength = joint.length;
     def.maxLength = joint.length;
@@ -363,6 +380,33 @@ b2Joint* Builder::addDistance(const JointDef& joint, const std::string& path) {
         def.minLength = joint.limit.lower;
         def.maxLength = joint.limit.upper;
     }
+    return m_result.world->CreateJoint(&def);
+}
+
+b2Joint* Builder::addWeld(const JointDef& joint) {
+    auto def = jointDef<b2WeldJointDef>(joint);
+    def.referenceAngle = referenceAngle(joint);
+    if (joint.spring.enabled) {
+        b2AngularStiffness(def.stiffness, def.damping, joint.spring.hertz,
+                           joint.spring.dampingRatio, def.bodyA, def.bodyB);
+    }
+    return m_result.world->CreateJoint(&def);
+}
+
+b2Joint* Builder::addPrismatic(const JointDef& joint, const std::string& path) {
+    if (joint.spring.enabled) m_notes.add(path, "Box2D 2.4 has no spring on prismatic joints");
+    auto def = jointDef<b2PrismaticJointDef>(joint);
+    const Rotation axis = normalized(joint.axis);
+    def.localAxisA = {axis.c, axis.s};
+    def.referenceAngle = referenceAngle(joint);
+    def.enableLimit = joint.limit.enabled;
+    if (joint.limit.enabled) {
+        def.lowerTranslation = joint.limit.lower;
+        def.upperTranslation = joint.limit.upper;
+    }
+    def.enableMotor = joint.motor.enabled;
+    def.motorSpeed = joint.motor.speed;
+    def.maxMotorForce = joint.motor.maxEffort;
     return m_result.world->CreateJoint(&def);
 }
 

@@ -2,12 +2,13 @@
 ///
 /// What both have is carried over exactly: bodies with damping, gravity scale and sleep, circles,
 /// polygons without radius, segments (as two-sided edges), friction, restitution, filters of 16
-/// bits; revolute joints with limit and motor, distance joints with spring and range, mouse joints.
+/// bits; revolute and prismatic joints with limit and motor, distance joints with spring and range,
+/// welds, mouse joints.
 /// The rest is approximated or left out, and said in `notes`, one sentence for each kind of loss:
 ///  - a polygon's rounded corners are made sharp: its edges are moved out by the radius;
 ///  - a capsule is two circles and a box; such bodies get the mass of the exact shapes;
-///  - rolling resistance, tangent speed, springs of revolute joints and motors of distance joints
-///    are left out.
+///  - rolling resistance, tangent speed, springs of revolute and prismatic joints and motors of
+///    distance joints are left out.
 /// Box2D keeps polygons apart by a skin of 1 cm each; it stays on, as its users have it.
 #pragma once
 

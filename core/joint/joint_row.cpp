@@ -99,6 +99,51 @@ void solveDistance(SolverBody* bodies, JointRow& row, const JointPass& pass) {
     store(bodies, row, b);
 }
 
+void solveWeld(SolverBody* bodies, JointRow& row, const JointPass& pass) {
+    JointBodies b = load(bodies, row);
+    const Geometry g = geometry(bodies, row);
+    const float angle = angleNow(bodies, row);
+    if ((row.flags & JointInfo::spring) != 0) {
+        solveHold(b, AxisPart{}, angle, row.spring, row.impulses.spring);
+        PointPart::solve(b, g.rA, g.rB, g.between, pass.soft, row.impulses.point);
+    } else {
+        FixedPart::solve(b, g.rA, g.rB, g.between, angle, pass.soft, row.impulses.point,
+                         row.impulses.spring);
+    }
+    store(bodies, row, b);
+}
+
+/// Along the axis as turned by now; the arm of A reaches to B's anchor, where the axis pushes.
+LinePart slideOf(const SolverBody* bodies, const JointRow& row, const Geometry& g) {
+    const SolverBody& a = bodies[readPlace(row.bodyA)];
+    return {g.rA + g.between, g.rB, rotate(Rotation{a.dc, a.ds}, row.axis)};
+}
+
+LinePart acrossOf(const LinePart& along) {
+    return {along.rA, along.rB, perpLeft(along.u)};
+}
+
+void solvePrismatic(SolverBody* bodies, JointRow& row, const JointPass& pass) {
+    JointBodies b = load(bodies, row);
+    const Geometry g = geometry(bodies, row);
+    const LinePart along = slideOf(bodies, row, g);
+    const LinePart across = acrossOf(along);
+    const float now = dot(along.u, g.between);
+    if ((row.flags & JointInfo::spring) != 0) {
+        solveHold(b, along, now, row.spring, row.impulses.spring);
+    }
+    if ((row.flags & JointInfo::motor) != 0) {
+        solveMotor(b, along, row.motorSpeed, pass.h * row.motorMaxEffort, row.impulses.motor);
+    }
+    if ((row.flags & JointInfo::limit) != 0) {
+        solveLimit(b, along, 1.0f, now - row.lower, pass.inverseH, pass.soft, row.impulses.lower);
+        solveLimit(b, along, -1.0f, row.upper - now, pass.inverseH, pass.soft, row.impulses.upper);
+    }
+    SlidePart::solve(b, across, dot(across.u, g.between), angleNow(bodies, row), pass.soft,
+                     row.impulses.point);
+    store(bodies, row, b);
+}
+
 void solveMouse(SolverBody* bodies, JointRow& row, const JointPass& pass) {
     JointBodies b = load(bodies, row);
     const Geometry g = geometry(bodies, row);
@@ -119,6 +164,7 @@ JointRow prepareJoint(const JointInfo& info, const JointImpulses& impulses, std:
     row.anchorB = rotate(poseB.q, info.anchorB);
     row.centers = poseB.p - (row.kind == JointKind::Mouse ? info.target : poseA.p);
     row.angle = relative(info.reference, relative(poseA.q, poseB.q));
+    row.axis = rotate(poseA.q, info.axis());
     row.length = info.length;
     row.lower = info.lower;
     row.upper = info.upper;
@@ -139,6 +185,11 @@ void warmStartJoint(SolverBody* bodies, const JointRow& row) {
         float now = 0;
         const LinePart line = lineOf(g, now);
         line.apply(b, axial + l.point.x);
+    } else if (row.kind == JointKind::Prismatic) {
+        const LinePart along = slideOf(bodies, row, g);
+        along.apply(b, axial);
+        acrossOf(along).apply(b, l.point.x);
+        applyAngular(b, l.point.y);
     } else {
         applyLinear(b, g.rA, g.rB, l.point);
         applyAngular(b, axial);
@@ -154,6 +205,10 @@ void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass) {
             return solveDistance(bodies, row, pass);
         case JointKind::Mouse:
             return solveMouse(bodies, row, pass);
+        case JointKind::Weld:
+            return solveWeld(bodies, row, pass);
+        case JointKind::Prismatic:
+            return solvePrismatic(bodies, row, pass);
     }
 }
 

@@ -18,7 +18,8 @@ struct JointRow {
     float mA = 0, iA = 0, mB = 0, iB = 0;
     Vec2 anchorA, anchorB;  ///< from the centres, world axes, at the start of the step
     Vec2 centers;           ///< cB − cA at the start; mouse: cB − target
-    Rotation angle;         ///< revolute: coordinate at the start, as a rotation
+    Rotation angle;         ///< B's less A's less the reference at the start, as a rotation
+    Vec2 axis;              ///< prismatic: world axes, at the start
     float length = 0, lower = 0, upper = 0;
     float motorSpeed = 0, motorMaxEffort = 0, maxForce = 0;
     Softness spring;

@@ -76,8 +76,9 @@ struct AxisPart {
     static void apply(JointBodies& b, float l) { applyAngular(b, l); }
 };
 
-/// The distance of two anchors along the unit axis u from A's to B's.
-/// Effective mass 1 / (mA + mB + iA (rA×u)² + iB (rB×u)²).
+/// The distance of two anchors along the unit axis u from A's to B's. An axis that turns with body
+/// A takes its arm to B's anchor: rA + (pB − pA). Effective mass 1 / (mA + mB + iA (rA×u)² + iB
+/// (rB×u)²).
 struct LinePart {
     Vec2 rA, rB, u;
     [[nodiscard]] float mass(const JointBodies& b) const {
@@ -101,6 +102,68 @@ void solveHold(JointBodies& b, const Coordinate& q, float error, const Softness&
     impulse += delta;
     q.apply(b, delta);
 }
+
+/// What is left of the inverse inertias of two bodies whose angles are held together.
+inline float reducedInertia(const JointBodies& b) {
+    const float k = b.iA + b.iB;
+    return k > 0.0f ? b.iA * b.iB / k : 0.0f;
+}
+
+/// Two points and two angles coincide: `PointPart` and the angle, three rows solved together. One
+/// after the other they would fight: of a beam held at its end, each undoes 3/4 of the other's
+/// work.
+///   a = rA⊥, b = rB⊥;  K = [ m 1 + iA a aᵀ + iB b bᵀ, iA a + iB b; (iA a + iB b)ᵀ, iA + iB ]
+/// Without the angle (its Schur complement) the point has, with d = a − b and
+/// i = iA iB / (iA + iB),  K' = m 1 + i d dᵀ,  and  K'⁻¹ x = (x − i d (d·x) / (m + i d·d)) / m
+/// (Sherman and Morrison 1950), free of cancellation.
+struct FixedPart {
+    static void solve(JointBodies& b, Vec2 rA, Vec2 rB, Vec2 error, float angle,
+                      const Softness& soft, Vec2& impulse, float& twist) {
+        const float m = b.mA + b.mB;
+        const float inverseMass = m > 0.0f ? 1.0f / m : 0.0f;
+        const float angleMass = AxisPart::mass(b);
+        const Vec2 armA = perpLeft(rA), armB = perpLeft(rB);
+        const Vec2 coupling = b.iA * armA + b.iB * armB;
+        const float turn = AxisPart::rate(b) + soft.biasRate * angle;
+        const Vec2 rhs =
+            (anchorVelocity(b, rA, rB) + soft.biasRate * error) - (turn * angleMass) * coupling;
+        const Vec2 d = armA - armB;
+        const float i = reducedInertia(b);
+        const float along = m > 0.0f ? i * dot(d, rhs) / (m + i * dot(d, d)) : 0.0f;
+        const Vec2 rigid = inverseMass * (rhs - along * d);
+        const float rigidTwist = angleMass * (turn - dot(coupling, rigid));
+        const Vec2 old = impulse;
+        const float oldTwist = twist;
+        impulse = (old - soft.massScale * rigid) - soft.impulseScale * old;
+        twist = (oldTwist - soft.massScale * rigidTwist) - soft.impulseScale * oldTwist;
+        applyLinear(b, rA, rB, impulse - old);
+        applyAngular(b, twist - oldTwist);
+    }
+};
+
+/// A point of B stays on an axis of A and the angles coincide: two rows solved together.
+///   n across the axis, a = rA × n with rA to B's anchor, b = rB × n;
+///   K = [ m + iA a² + iB b², iA a + iB b; iA a + iB b, iA + iB ]
+/// Without the angle:  K' = m + i (a − b)²,  i as above.  impulse: x along n, y of the angle.
+struct SlidePart {
+    static void solve(JointBodies& b, const LinePart& across, float error, float angle,
+                      const Softness& soft, Vec2& impulse) {
+        const float angleMass = AxisPart::mass(b);
+        const float armA = cross(across.rA, across.u);
+        const float armB = cross(across.rB, across.u);
+        const float coupling = b.iA * armA + b.iB * armB;
+        const float turn = AxisPart::rate(b) + soft.biasRate * angle;
+        const float rhs = (across.rate(b) + soft.biasRate * error) - coupling * (angleMass * turn);
+        const float arm = armA - armB;
+        const float k = b.mA + b.mB + reducedInertia(b) * arm * arm;
+        const float rigid = k > 0.0f ? rhs / k : 0.0f;
+        const float rigidTwist = angleMass * (turn - coupling * rigid);
+        const Vec2 old = impulse;
+        impulse = (old - soft.massScale * Vec2{rigid, rigidTwist}) - soft.impulseScale * old;
+        across.apply(b, impulse.x - old.x);
+        applyAngular(b, impulse.y - old.y);
+    }
+};
 
 /// A coordinate driven at a speed with at most `maxImpulse` a substep.
 template <class Coordinate>

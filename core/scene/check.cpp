@@ -259,21 +259,25 @@ bool Checker::limit(const Place& place, const JointDef& joint) {
     }
     if (!limit.enabled) return true;
     if (joint.kind == JointKind::Mouse) return fail(place, "a mouse joint has no limit");
+    if (joint.kind == JointKind::Weld) return fail(place, "a weld joint has no limit");
     if (joint.kind == JointKind::Revolute) {
         const float pi = std::numbers::pi_v<float>;
         if (!(limit.lower > -pi)) return fail(place.at("lower"), "must be above -pi");
         if (!(limit.upper < pi)) return fail(place.at("upper"), "must be below pi");
-    } else if (!within(place.at("lower"), limit.lower, 0.0f, caps::maxJointLength) ||
-               !within(place.at("upper"), limit.upper, 0.0f, caps::maxJointLength)) {
-        return false;
+    } else {
+        const float least = joint.kind == JointKind::Distance ? 0.0f : -caps::maxJointLength;
+        if (!within(place.at("lower"), limit.lower, least, caps::maxJointLength) ||
+            !within(place.at("upper"), limit.upper, least, caps::maxJointLength)) {
+            return false;
+        }
     }
     return limit.lower <= limit.upper ||
            fail(place, "lower " + text(limit.lower) + " is above upper " + text(limit.upper));
 }
 
 bool Checker::joint(const Place& place, const JointDef& joint, std::size_t bodyCount) {
-    if (static_cast<std::uint32_t>(joint.kind) > static_cast<std::uint32_t>(JointKind::Mouse)) {
-        return fail(place.at("kind"), "is not revolute, distance or mouse");
+    if (static_cast<std::uint32_t>(joint.kind) > static_cast<std::uint32_t>(JointKind::Prismatic)) {
+        return fail(place.at("kind"), "is not revolute, distance, mouse, weld or prismatic");
     }
     if (!within(place.at("id"), joint.id, 0u, caps::maxId)) return false;
     const auto missing = [&](const Place& end, std::uint32_t body) {
@@ -286,10 +290,13 @@ bool Checker::joint(const Place& place, const JointDef& joint, std::size_t bodyC
         return fail(place.at("bodyB"), "is body A: a joint needs two bodies");
     }
     if (mouse && joint.motor.enabled) return fail(place.at("motor"), "a mouse joint has none");
+    if (joint.kind == JointKind::Weld && joint.motor.enabled) {
+        return fail(place.at("motor"), "a weld joint has none");
+    }
     if (mouse && !joint.spring.enabled) return fail(place.at("spring"), "a mouse joint needs one");
     if (!within(place.at("anchorA"), joint.anchorA, maxCoordinate) ||
         !within(place.at("anchorB"), joint.anchorB, maxCoordinate) ||
-        !unit(place.at("reference"), joint.reference) ||
+        !unit(place.at("reference"), joint.reference) || !unit(place.at("axis"), joint.axis) ||
         !within(place.at("length"), joint.length, 0.0f, caps::maxJointLength)) {
         return false;
     }

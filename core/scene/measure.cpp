@@ -45,18 +45,47 @@ double energyOf(const WorldInfo& world, std::span<const BodyInfo> bodies,
     return energy;
 }
 
+/// How far a coordinate is outside of the joint's limit.
+double outsideOf(const JointInfo& joint, double coordinate) {
+    return std::max({0.0, static_cast<double>(joint.lower) - coordinate,
+                     coordinate - static_cast<double>(joint.upper)});
+}
+
+/// How far body B's centre is from where body A has it, by the angle alone.
+double swingOf(const JointInfo& joint, const Posed& poseA, const Posed& poseB) {
+    const RotationT<double> reference{static_cast<double>(joint.reference.c),
+                                      static_cast<double>(joint.reference.s)};
+    const RotationT<double> held = compose(poseA.q, normalized(reference));
+    const Vec2d arm = inDouble(joint.anchorB);
+    return length(rotate(poseB.q, arm) - rotate(held, arm));
+}
+
+/// Across the axis or outside of the limit, and the swing, whichever is most.
+double slideErrorOf(const JointInfo& joint, const Posed& poseA, const Posed& poseB, Vec2d gap) {
+    const Vec2d axis = normalized(rotate(poseA.q, inDouble(joint.axis())));
+    const double outside = joint.has(JointInfo::limit) ? outsideOf(joint, dot(axis, gap)) : 0.0;
+    return std::max({std::abs(cross(axis, gap)), outside, swingOf(joint, poseA, poseB)});
+}
+
 /// How far the joint is from where it should be; 0 for a mouse joint, whose target may be far.
 double errorOf(const JointInfo& joint, const Posed& poseA, const Posed& poseB) {
     const Vec2d gap =
         transform(poseB, inDouble(joint.anchorB)) - transform(poseA, inDouble(joint.anchorA));
     const double distance = length(gap);
-    if (joint.kind() == JointKind::Revolute) return distance;
-    if (joint.kind() == JointKind::Mouse) return 0.0;
-    if (joint.has(JointInfo::limit)) {
-        const double below = static_cast<double>(joint.lower) - distance;
-        const double above = distance - static_cast<double>(joint.upper);
-        return std::max({0.0, below, above});
+    switch (joint.kind()) {
+        case JointKind::Revolute:
+            return distance;
+        case JointKind::Mouse:
+            return 0.0;
+        case JointKind::Weld:
+            if (joint.has(JointInfo::spring)) return distance;
+            return std::max(distance, swingOf(joint, poseA, poseB));
+        case JointKind::Prismatic:
+            return slideErrorOf(joint, poseA, poseB, gap);
+        case JointKind::Distance:
+            break;
     }
+    if (joint.has(JointInfo::limit)) return outsideOf(joint, distance);
     if (joint.has(JointInfo::spring)) return 0.0;
     return std::abs(distance - static_cast<double>(joint.length));
 }

@@ -15,7 +15,9 @@ struct Measures {
     double maxPenetration = 0.0;   ///< m, from a fresh narrow phase in double; 0: none
     double meanPenetration = 0.0;  ///< m, over the pairs of shapes that overlap and may touch
     /// m, largest |pA − pB| of revolutes; of distance joints how far the length is outside the
-    /// limit or, without limit and spring, off the rest length.
+    /// limit or, without limit and spring, off the rest length; of prismatic joints how far B's
+    /// anchor is off the axis or outside the limit, of welds |pA − pB|. Where the angle is held,
+    /// also how far it swings B's centre about B's anchor from where it should be.
     double maxJointError = 0.0;
 };
 

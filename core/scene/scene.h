@@ -108,7 +108,9 @@ struct BodyDef {
 enum class JointKind : std::uint8_t {
     Revolute,  ///< two bodies share a point
     Distance,  ///< two points keep a distance, or a range of it
-    Mouse      ///< a point of body B is drawn to `target` with a bounded force
+    Mouse,     ///< a point of body B is drawn to `target` with a bounded force
+    Weld,      ///< two bodies share a point and an angle
+    Prismatic  ///< a point of body B slides along an axis of body A, neither turns against it
 };
 
 /// A soft part: a damped harmonic oscillator of the row's effective mass.
@@ -119,7 +121,8 @@ struct SpringDef {
     friend bool operator==(const SpringDef&, const SpringDef&) = default;
 };
 
-/// Bounds of the joint's coordinate: rad for a revolute joint within (−π, π), m for a distance.
+/// Bounds of the joint's coordinate: rad for a revolute joint within (−π, π), m for a distance, m
+/// for a prismatic joint within ±100,000.
 struct LimitDef {
     bool enabled = false;
     float lower = 0.0f;
@@ -137,20 +140,26 @@ struct MotorDef {
 
 /// A joint between two bodies of the same list (a scene's, or a spawn's), given by their places.
 /// Two bodies that nothing can push may be joined; the joint then does nothing. A mouse joint has a
-/// spring, neither limit nor motor, and its body A means nothing (it may be body B).
+/// spring, neither limit nor motor, and its body A means nothing (it may be body B). A weld has
+/// neither limit nor motor; its spring is that of its angle, the point stays rigid. The coordinate
+/// of a prismatic joint is how far anchor B is from anchor A along the axis.
 struct JointDef {
     JointId id = 0;  ///< as BodyDef::id
     JointKind kind = JointKind::Revolute;
     bool collideConnected = false;  ///< whether shapes of the two bodies may touch
     std::uint32_t bodyA = 0;        ///< place in `bodies`; a mouse joint has no body A
     std::uint32_t bodyB = 0;
-    Vec2 anchorA;           ///< m, in the frame of body A's origin
-    Vec2 anchorB;           ///< m, in the frame of body B's origin
-    Rotation reference;     ///< revolute: rotation of B relative to A at coordinate 0
+    Vec2 anchorA;  ///< m, in the frame of body A's origin
+    Vec2 anchorB;  ///< m, in the frame of body B's origin
+    /// Revolute: rotation of B relative to A at coordinate 0; weld, prismatic: the one that is
+    /// held.
+    Rotation reference;
+    Rotation axis;          ///< prismatic: its direction (cos θ, sin θ) in the frame of body A
     float length = 1.0f;    ///< distance: rest length, m, [0.001, 1e5]
     Vec2 target;            ///< mouse: m, in the world
     float maxForce = 0.0f;  ///< mouse: N, [0, 1e12]
-    SpringDef spring;       ///< revolute: to coordinate 0; distance: to `length`; mouse
+    SpringDef spring;       ///< revolute, prismatic: to coordinate 0; distance: to `length`; mouse
+                            ///< and weld: as above
     LimitDef limit;
     MotorDef motor;
     friend bool operator==(const JointDef&, const JointDef&) = default;

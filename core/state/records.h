@@ -160,14 +160,14 @@ struct JointInfo {
     Vec2 anchorB;
     Rotation reference;
     float length;          ///< m
-    Vec2 target;           ///< m, mouse joint: where body B's anchor is drawn to
+    Vec2 target;           ///< mouse: m, where body B's anchor is drawn to; prismatic: `axis()`
     float maxForce;        ///< N
     float springHertz;     ///< Hz
     float springDamping;   ///< damping ratio
-    float lower;           ///< rad; distance: m
+    float lower;           ///< rad; distance, prismatic: m
     float upper;           ///< the same
-    float motorSpeed;      ///< rad/s; distance: m/s
-    float motorMaxEffort;  ///< N·m; distance: N
+    float motorSpeed;      ///< rad/s; distance, prismatic: m/s
+    float motorMaxEffort;  ///< N·m; distance, prismatic: N
 
     static constexpr std::uint32_t collideConnected = 0x100u;
     static constexpr std::uint32_t spring = 0x200u;
@@ -176,6 +176,8 @@ struct JointInfo {
     static constexpr std::uint32_t hasMotor = 0x1000u;  ///< the scene gave it a motor
     [[nodiscard]] JointKind kind() const { return static_cast<JointKind>(flags & 0xffu); }
     [[nodiscard]] bool has(std::uint32_t bit) const { return (flags & bit) != 0; }
+    /// Prismatic: unit vector in the frame of body A.
+    [[nodiscard]] Vec2 axis() const { return target; }
 };
 template <>
 inline constexpr auto fieldsOf<JointInfo> = std::to_array<Field>({
@@ -202,8 +204,10 @@ static_assert(fieldsTile<JointInfo>());
 /// Accumulated impulses of a joint's parts, from which the next step starts warm. Place i belongs
 /// to joint i.
 struct JointImpulses {
-    Vec2 point;    ///< N·s, point part; x alone for the rigid part of a distance joint
-    float spring;  ///< N·s or N·m·s
+    /// N·s, point part; x alone for the rigid part of a distance joint; prismatic: x across the
+    /// axis, y of the angle (N·m·s).
+    Vec2 point;
+    float spring;  ///< N·s or N·m·s; weld: of the angle, with a spring or rigid
     float motor;
     float lower;
     float upper;

@@ -301,11 +301,17 @@ std::string faultOf(const ShapeInfo& s) {
 }
 
 std::string faultOf(const JointInfo& j) {
-    if ((j.flags & 0xffu) > 2 || j.flags > 0x1fff) return "flags: unknown";
+    if ((j.flags & 0xffu) > 4 || j.flags > 0x1fff) return "flags: unknown";
+    const JointKind kind = j.kind();
+    constexpr std::uint32_t driven = JointInfo::limit | JointInfo::motor | JointInfo::hasMotor;
+    if (kind == JointKind::Weld && j.has(driven)) return "flags: a weld has no limit and no motor";
     // From the centres of mass, as far out as those may be.
     if (!within(j.anchorA, farthestCenter)) return "anchorA: out of range";
     if (!within(j.anchorB, farthestCenter)) return "anchorB: out of range";
     if (!within(j.target, maxCoordinate)) return "target: out of range";
+    if (kind == JointKind::Prismatic && !unit({j.axis().x, j.axis().y})) {
+        return "target: an axis that is not a unit vector";
+    }
     if (!unit(j.reference)) return "reference: not a unit vector";
     if (!within(j.length, 0, caps::maxJointLength)) return "length: out of range";
     if (!within(j.maxForce, 0, caps::maxEffort)) return "maxForce: out of range";
@@ -314,9 +320,9 @@ std::string faultOf(const JointInfo& j) {
     if (!within(j.springHertz, 0, 1000)) return "springHertz: out of range";
     if (!within(j.springDamping, 0, 1000)) return "springDamping: out of range";
     if (!j.has(JointInfo::limit)) return {};
-    const bool turns = j.kind() == JointKind::Revolute;
-    const float least = turns ? -std::numbers::pi_v<float> : 0.0f;
+    const bool turns = kind == JointKind::Revolute;
     const float most = turns ? std::numbers::pi_v<float> : caps::maxJointLength;
+    const float least = kind == JointKind::Distance ? 0.0f : -most;
     if (!within(j.lower, least, most)) return "lower: out of range";
     if (!within(j.upper, least, most)) return "upper: out of range";
     if (j.lower > j.upper) return "lower: above upper";

@@ -78,7 +78,8 @@ JointInfo jointInfo(const JointDef& def, const BodyInfo* a, const BodyInfo& b) {
     j.anchorB = canonicalZero(def.anchorB - b.localCenter);
     j.reference = canonicalZero(normalized(def.reference));
     j.length = canonicalZero(def.length);
-    j.target = canonicalZero(def.target);
+    const Rotation axis = normalized(def.axis);
+    j.target = canonicalZero(def.kind == JointKind::Prismatic ? Vec2{axis.c, axis.s} : def.target);
     j.maxForce = canonicalZero(def.maxForce);
     j.springHertz = canonicalZero(def.spring.hertz);
     j.springDamping = canonicalZero(def.spring.dampingRatio);

@@ -2,6 +2,7 @@
 // run is repeated with HUESTEP_SEED=… as printed.
 
 #include <algorithm>
+#include <array>
 
 #include "core/math/trig.h"
 #include "tests/determinism/together.h"
@@ -64,7 +65,9 @@ BodyDef randomBody(Random& random) {
 
 JointDef randomJoint(Random& random, const std::vector<BodyDef>& bodies) {
     JointDef joint;
-    joint.kind = random.once(3) ? JointKind::Distance : JointKind::Revolute;
+    constexpr std::array kinds{JointKind::Revolute, JointKind::Revolute, JointKind::Distance,
+                               JointKind::Weld, JointKind::Prismatic};
+    joint.kind = kinds[random.below(kinds.size())];
     joint.bodyA = random.below(bodies.size());
     joint.bodyB = (joint.bodyA + 1 + random.below(bodies.size() - 1)) %
                   static_cast<std::uint32_t>(bodies.size());
@@ -73,6 +76,9 @@ JointDef randomJoint(Random& random, const std::vector<BodyDef>& bodies) {
     joint.length = random.betweenF(0.5, 2.0);
     joint.collideConnected = random.once(2);
     if (random.once(3)) joint.spring = {true, random.betweenF(0.5, 6.0), random.betweenF(0.0, 1.0)};
+    joint.reference = rotationOf(random.betweenF(-3.0, 3.0));
+    joint.axis = rotationOf(random.betweenF(-3.0, 3.0));
+    if (joint.kind == JointKind::Weld) return joint;
     if (random.once(3)) joint.limit = {true, -0.5f, 1.0f};
     if (joint.kind == JointKind::Distance) joint.limit.lower = 0.2f;
     if (joint.limit.enabled && joint.kind == JointKind::Distance) joint.limit.upper = 3.0f;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/box2d/engine.h"
 #include "core/scene/catalog.h"
 #include "core/scene/measure.h"
 #include "core/world/world.h"
@@ -30,6 +31,51 @@ TEST(Accuracy, ADoublePendulumIsWhereItsEquationsSayAfterASecond) {
     const double off =
         std::hypot(static_cast<double>(tip.x) + 1.4771364, static_cast<double>(tip.y) + 1.2884217);
     EXPECT_LT(off, 6e-3);
+}
+
+/// Beams welded end to end to a wall, and a lift that carries the last of them on its edge.
+Scene cantilever() {
+    Scene scene;
+    scene.sleep = false;
+    scene.bodies.emplace_back();
+    for (std::uint32_t i = 0; i < 8; ++i) {
+        BodyDef beam;
+        beam.type = BodyType::Dynamic;
+        beam.position = {0.5f + static_cast<float>(i), 0.0f};
+        beam.shapes = {ShapeDef::box(0.5f, 0.125f)};
+        scene.bodies.push_back(beam);
+        JointDef weld;
+        weld.kind = i == 4 ? JointKind::Prismatic : JointKind::Weld;
+        weld.limit = {i == 4, 0.0f, 0.0f};
+        weld.bodyA = i;
+        weld.bodyB = i + 1;
+        weld.anchorA = {i == 0 ? 0.0f : 0.5f, 0.0f};
+        weld.anchorB = {-0.5f, 0.0f};
+        scene.joints.push_back(weld);
+    }
+    return scene;
+}
+
+TEST(Accuracy, WeldsAndSlidesAreOffByNoMoreThanThoseOfBox2D) {
+    const Scene scene = cantilever();
+    Result<World> world = World::create(scene);
+    ASSERT_TRUE(world.ok());
+    Result<std::unique_ptr<Engine>> peer = makeBox2dEngine(scene);
+    ASSERT_TRUE(peer.ok());
+    for (int tick = 0; tick < 600; ++tick) {
+        world->step({});
+        (*peer)->step();
+    }
+    const auto errorOf = [&](std::span<const BodyMotion> motions) {
+        return measure(world->info(), world->bodies(), world->shapes(), world->joints(), motions)
+            .maxJointError;
+    };
+    const double ours = errorOf(world->motions());
+    const double theirs = errorOf((*peer)->motions());
+    RecordProperty("ours", std::to_string(ours));
+    RecordProperty("theirs", std::to_string(theirs));
+    EXPECT_LT(ours, 0.02);
+    EXPECT_LE(ours, theirs) << "8 m of beams bend each engine's welds";
 }
 
 TEST(Accuracy, AStackOfTwentyBoxesAtRestOverlapsByLessThanTwoCentimetres) {

@@ -70,6 +70,20 @@ Scene commonScene() {
     scene.joints.push_back(rope);
     rope.limit = {};
     scene.joints.push_back(rope);
+    JointDef weld;
+    weld.kind = JointKind::Weld;
+    weld.bodyA = 1;
+    weld.bodyB = 3;
+    weld.anchorB = {0.5f, 1.0f};
+    scene.joints.push_back(weld);
+    JointDef slide;
+    slide.kind = JointKind::Prismatic;
+    slide.bodyA = 1;
+    slide.bodyB = 2;
+    slide.axis = {0.0f, 1.0f};
+    slide.limit = {true, -0.5f, 0.75f};
+    slide.motor = {true, 2.0f, 30.0f};
+    scene.joints.push_back(slide);
     return scene;
 }
 
@@ -149,6 +163,49 @@ TEST(Box2DWorld, KeepsTheCoordinateOfAHingeBetweenTurnedBodies) {
     ASSERT_TRUE(back.ok());
     EXPECT_NEAR(back->scene.joints[0].reference.c, r, 1e-5f);
     EXPECT_NEAR(back->scene.joints[0].reference.s, r, 1e-5f);
+}
+
+TEST(Box2DWorld, KeepsTheAngleThatWeldsAndSlidesHold) {
+    const float r = std::sqrt(0.5f);
+    for (const JointKind kind : {JointKind::Weld, JointKind::Prismatic}) {
+        Scene scene;
+        scene.gravity = {};
+        scene.bodies.push_back(bodyOf(BodyType::Static, {}, ShapeDef::circle({}, 0.5f)));
+        scene.bodies.push_back(bodyOf(BodyType::Dynamic, {}, ShapeDef::circle({}, 0.5f)));
+        scene.bodies[0].rotation = {-r, r};   // 135 degrees
+        scene.bodies[1].rotation = {-r, -r};  // 225 degrees, 90 from there
+        JointDef joint;
+        joint.kind = kind;
+        joint.bodyB = 1;
+        joint.reference = {r, r};  // so it is to turn back by 45
+        joint.axis = {0.6f, 0.8f};
+        scene.joints.push_back(joint);
+        B2World made = worldOf(scene);
+        for (int tick = 0; tick < 120; ++tick) made.world->Step(1.0f / 60.0f, 8, 3);
+        EXPECT_NEAR(made.bodies[1]->GetTransform().q.c, -1.0f, 1e-3f);
+        EXPECT_NEAR(made.bodies[1]->GetTransform().q.s, 0.0f, 1e-2f);
+        const Result<B2Import> back = sceneOfB2World(*made.world);
+        ASSERT_TRUE(back.ok());
+        EXPECT_NEAR(back->scene.joints[0].reference.c, r, 1e-5f);
+        EXPECT_NEAR(back->scene.joints[0].reference.s, r, 1e-5f);
+        if (kind == JointKind::Weld) continue;
+        EXPECT_NEAR(back->scene.joints[0].axis.c, 0.6f, 1e-6f);
+        EXPECT_NEAR(back->scene.joints[0].axis.s, 0.8f, 1e-6f);
+    }
+}
+
+TEST(Box2DWorld, GivesBackTheSpringOfAWeldByItsFrequency) {
+    Scene scene = commonScene();
+    scene.joints.erase(scene.joints.begin(), scene.joints.end() - 2);
+    scene.joints[0].spring = {true, 3.0f, 0.4f};
+    scene.joints[1].spring = {true, 1.0f, 0.0f};
+    const B2World made = worldOf(scene);
+    EXPECT_EQ(made.notes,
+              (std::vector<std::string>{"joints[1]: Box2D 2.4 has no spring on prismatic joints"}));
+    const Result<B2Import> back = sceneOfB2World(*made.world);
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_NEAR(back->scene.joints[0].spring.hertz, 3.0f, 1e-4f);
+    EXPECT_NEAR(back->scene.joints[0].spring.dampingRatio, 0.4f, 1e-4f);
 }
 
 TEST(Box2DWorld, SaysWhatItLeavesOutOnceForEachKindOfLoss) {
@@ -249,9 +306,9 @@ TEST(Box2DWorld, IsNotedWhereHuestepHasNoSuchThing) {
                                        b2Vec2{-1.0f, -1.0f}, b2Vec2{-3.0f, 0.0f}};
     chain.CreateChain(points.data(), 4, {4.0f, 1.0f}, {-4.0f, 1.0f});
     ground->CreateFixture(&chain, 0.0f);
-    b2WeldJointDef weld;
-    weld.Initialize(body, ground, {0.0f, 0.0f});
-    world.CreateJoint(&weld);
+    b2PulleyJointDef pulley;
+    pulley.Initialize(body, ground, {0.0f, 9.0f}, {5.0f, 9.0f}, {0.0f, 0.0f}, {5.0f, 0.0f}, 1.0f);
+    world.CreateJoint(&pulley);
     const Result<B2Import> back = sceneOfB2World(world);
     ASSERT_TRUE(back.ok()) << back.error().message;
     EXPECT_EQ(back->notes,

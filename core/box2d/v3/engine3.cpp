@@ -53,6 +53,8 @@ class Box2d3Engine final : public Engine {
     void addRevolute(const JointDef& joint, const b2JointDef& base);
     void addDistance(const JointDef& joint, const b2JointDef& base);
     void addMouse(const JointDef& joint, b2JointDef base);
+    void addWeld(const JointDef& joint, const b2JointDef& base);
+    void addPrismatic(const JointDef& joint, const b2JointDef& base);
 
     b2WorldId m_world{};
     std::vector<b2BodyId> m_bodies;  ///< place i: body i by ascending id, once built
@@ -80,6 +82,12 @@ Status Box2d3Engine::build(const Scene& scene) {
                 break;
             case JointKind::Mouse:
                 addMouse(joint, base);
+                break;
+            case JointKind::Weld:
+                addWeld(joint, base);
+                break;
+            case JointKind::Prismatic:
+                addPrismatic(joint, base);
                 break;
         }
     }
@@ -204,6 +212,36 @@ void Box2d3Engine::addMouse(const JointDef& joint, b2JointDef base) {
     def.linearDampingRatio = joint.spring.dampingRatio;
     def.maxSpringForce = joint.maxForce;
     b2CreateMotorJoint(m_world, &def);
+}
+
+void Box2d3Engine::addWeld(const JointDef& joint, const b2JointDef& base) {
+    b2WeldJointDef def = b2DefaultWeldJointDef();
+    def.base = base;
+    def.base.localFrameA.q = toB2(normalized(joint.reference));
+    def.angularHertz = joint.spring.enabled ? joint.spring.hertz : 0.0f;  // 0 is rigid there
+    def.angularDampingRatio = joint.spring.dampingRatio;
+    b2CreateWeldJoint(m_world, &def);
+}
+
+/// The axis is the x axis of A's frame there; the frames coincide where B stands at the reference.
+void Box2d3Engine::addPrismatic(const JointDef& joint, const b2JointDef& base) {
+    b2PrismaticJointDef def = b2DefaultPrismaticJointDef();
+    def.base = base;
+    const Rotation axis = normalized(joint.axis);
+    def.base.localFrameA.q = toB2(axis);
+    def.base.localFrameB.q = toB2(relative(normalized(joint.reference), axis));
+    def.enableSpring = joint.spring.enabled;
+    def.hertz = joint.spring.hertz;
+    def.dampingRatio = joint.spring.dampingRatio;
+    def.enableLimit = joint.limit.enabled;
+    if (joint.limit.enabled) {
+        def.lowerTranslation = joint.limit.lower;
+        def.upperTranslation = joint.limit.upper;
+    }
+    def.enableMotor = joint.motor.enabled;
+    def.motorSpeed = joint.motor.speed;
+    def.maxMotorForce = joint.motor.maxEffort;
+    b2CreatePrismaticJoint(m_world, &def);
 }
 
 std::vector<BodyMotion> Box2d3Engine::motions() const {

@@ -2,6 +2,7 @@
 
 #include "core/joint/parts.h"
 
+#include <array>
 #include <cmath>
 
 #include "tests/core/support.h"
@@ -90,6 +91,86 @@ TEST(Parts, ARigidPointStopsAllMotionOfTheAnchorsAndConservesMomentum) {
         // What B got is the impulse, and its moment about B's centre.
         ASSERT_NEAR(wide(b.vB.x - before.vB.x), wide(b.mB * impulse.x), 1e-3);
         ASSERT_NEAR(wide(b.wB - before.wB), wide(b.iB * cross(rB, impulse)), 2e-2);
+    }
+}
+
+/// Row operations on J M⁻¹ Jᵀ of any rows J over (vA, wA, vB, wB), in double: the impulses that
+/// make J v zero.
+std::vector<double> solvedByRows(const std::vector<std::array<double, 6>>& rows,
+                                 const JointBodies& b) {
+    const std::array<double, 6> inverse{wide(b.mA), wide(b.mA), wide(b.iA),
+                                        wide(b.mB), wide(b.mB), wide(b.iB)};
+    const std::array<double, 6> v{wide(b.vA.x), wide(b.vA.y), wide(b.wA),
+                                  wide(b.vB.x), wide(b.vB.y), wide(b.wB)};
+    const std::size_t n = rows.size();
+    std::vector<std::vector<double>> m(n, std::vector<double>(n + 1));
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < 6; ++k) {
+            for (std::size_t j = 0; j < n; ++j) m[i][j] += rows[i][k] * inverse[k] * rows[j][k];
+            m[i][n] -= rows[i][k] * v[k];
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) {
+            if (j == i) continue;
+            const double factor = m[j][i] / m[i][i];
+            for (std::size_t k = 0; k <= n; ++k) m[j][k] -= factor * m[i][k];
+        }
+    }
+    std::vector<double> impulses;
+    for (std::size_t i = 0; i < n; ++i) impulses.push_back(m[i][n] / m[i][i]);
+    return impulses;
+}
+
+TEST(Parts, PointAndAngleOfAWeldAreThoseOfThreeRowsSolvedTogether) {
+    Random random(111);
+    SCOPED_TRACE(random.trace());
+    for (int i = 0; i < 5'000; ++i) {
+        JointBodies b = randomBodies(random);
+        const bool turns = b.iA + b.iB > 0.0f;
+        const Vec2 rA = random.point(-2.0, 2.0), rB = random.point(-2.0, 2.0);
+        std::vector<std::array<double, 6>> rows{{-1.0, 0.0, wide(rA.y), 1.0, 0.0, -wide(rB.y)},
+                                                {0.0, -1.0, -wide(rA.x), 0.0, 1.0, wide(rB.x)}};
+        if (turns) rows.push_back({0.0, 0.0, -1.0, 0.0, 0.0, 1.0});
+        const std::vector<double> wanted = solvedByRows(rows, b);
+        Vec2 impulse;
+        float twist = 0.0f;
+        FixedPart::solve(b, rA, rB, {}, 0.0f, rigid, impulse, twist);
+        ASSERT_NEAR(wide(impulse.x), wanted[0], 2e-4 * (1.0 + std::abs(wanted[0])));
+        ASSERT_NEAR(wide(impulse.y), wanted[1], 2e-4 * (1.0 + std::abs(wanted[1])));
+        if (turns) {
+            ASSERT_NEAR(wide(twist), wanted[2], 2e-4 * (1.0 + std::abs(wanted[2])));
+        }
+        ASSERT_LT(length(anchorVelocity(b, rA, rB)), 1e-3f);
+        if (turns) {
+            ASSERT_NEAR(wide(b.wB - b.wA), 0.0, 1e-3);
+        }
+    }
+}
+
+TEST(Parts, PointAndAngleOfASlideAreThoseOfTwoRowsSolvedTogether) {
+    Random random(112);
+    SCOPED_TRACE(random.trace());
+    for (int i = 0; i < 5'000; ++i) {
+        JointBodies b = randomBodies(random);
+        const bool turns = b.iA + b.iB > 0.0f;
+        const Vec2 n = normalized(random.point(-1.0, 1.0));
+        const LinePart across{random.point(-2.0, 2.0), random.point(-2.0, 2.0), n};
+        std::vector<std::array<double, 6>> rows{{-wide(n.x), -wide(n.y),
+                                                 -cross(wide(across.rA), wide(n)), wide(n.x),
+                                                 wide(n.y), cross(wide(across.rB), wide(n))}};
+        if (turns) rows.push_back({0.0, 0.0, -1.0, 0.0, 0.0, 1.0});
+        const std::vector<double> wanted = solvedByRows(rows, b);
+        Vec2 impulse;
+        SlidePart::solve(b, across, 0.0f, 0.0f, rigid, impulse);
+        ASSERT_NEAR(wide(impulse.x), wanted[0], 2e-4 * (1.0 + std::abs(wanted[0])));
+        if (turns) {
+            ASSERT_NEAR(wide(impulse.y), wanted[1], 2e-4 * (1.0 + std::abs(wanted[1])));
+        }
+        ASSERT_NEAR(wide(across.rate(b)), 0.0, 1e-3);
+        if (turns) {
+            ASSERT_NEAR(wide(b.wB - b.wA), 0.0, 1e-3);
+        }
     }
 }
 

@@ -209,7 +209,7 @@ const Case shapeCases[] = {
 INSTANTIATE_TEST_SUITE_P(Shape, SpoiledScene, testing::ValuesIn(shapeCases));
 
 const Case jointCases[] = {
-    {"joints[0].kind: is not revolute, distance or mouse",
+    {"joints[0].kind: is not revolute, distance, mouse, weld or prismatic",
      [](Scene& s) { s.joints[0].kind = static_cast<JointKind>(7); }},
     {"joints[0].bodyA: there is no body 4 among 4", [](Scene& s) { s.joints[0].bodyA = 4; }},
     {"joints[0].bodyB: there is no body 99 among 4", [](Scene& s) { s.joints[0].bodyB = 99; }},
@@ -222,6 +222,10 @@ const Case jointCases[] = {
     {"joints[0].reference: (c, s) must be (cos, sin) of an angle, but c*c + s*s is 0",
      [](Scene& s) {
          s.joints[0].reference = {0.0f, 0.0f};
+     }},
+    {"joints[0].axis: (c, s) must be (cos, sin) of an angle, but c*c + s*s is 2",
+     [](Scene& s) {
+         s.joints[0].axis = {1.0f, 1.0f};
      }},
     {"joints[1].length: must be at least 0.001 m, is 0",
      [](Scene& s) { s.joints[1].length = 0.0f; }},
@@ -253,6 +257,26 @@ const Case jointCases[] = {
     {"joints[1].limit.lower: must be from 0 to 1e+05, is -1",
      [](Scene& s) {
          s.joints[1].limit = {true, -1.0f, 1.0f};
+     }},
+    {"joints[1].limit.lower: must be from -1e+05 to 1e+05, is -2e+05",
+     [](Scene& s) {
+         s.joints[1].kind = JointKind::Prismatic;
+         s.joints[1].limit = {true, -2e5f, 1.0f};
+     }},
+    {"joints[1].limit: lower 1 is above upper -1",
+     [](Scene& s) {
+         s.joints[1].kind = JointKind::Prismatic;
+         s.joints[1].limit = {true, 1.0f, -1.0f};
+     }},
+    {"joints[0].limit: a weld joint has no limit",
+     [](Scene& s) {
+         s.joints[0].kind = JointKind::Weld;
+         s.joints[0].limit.enabled = true;
+     }},
+    {"joints[0].motor: a weld joint has none",
+     [](Scene& s) {
+         s.joints[0].kind = JointKind::Weld;
+         s.joints[0].motor.enabled = true;
      }},
     {"joints[0].motor.speed: must be from -1e+05 to 1e+05, is 1e+06",
      [](Scene& s) { s.joints[0].motor.speed = 1e6f; }},

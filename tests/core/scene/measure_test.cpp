@@ -168,6 +168,42 @@ TEST(Measure, ComparesADistanceJointWithItsLengthOrItsRange) {
     EXPECT_EQ(setup.take().maxJointError, 0.0) << "a target may be anywhere";
 }
 
+TEST(Measure, CountsTheAngleOfAWeldAsTheWayItSwingsTheCentre) {
+    HandMade setup;
+    setup.addBody(BodyType::Static, {1.0f, 1.0f});
+    setup.addBody(BodyType::Dynamic, {1.0f, 3.0f}, 1.0f);
+    JointInfo& joint = setup.addJoint(JointKind::Weld, 3, {}, 5, {-2.0f, 0.0f});
+    joint.reference = {0.0f, 1.0f};
+    setup.motions[1].rotation = {0.0f, 1.0f};
+    EXPECT_NEAR(setup.take().maxJointError, 0.0, 1e-12) << "as it should be, turned by 90 degrees";
+    setup.motions[1].position.y = 3.25f;
+    EXPECT_NEAR(setup.take().maxJointError, 0.25, 1e-12) << "the anchors are apart";
+    // Turned back by 90 degrees about the anchor: the centre is off by the diagonal of 2 m.
+    setup.motions[1] = {{3.0f, 1.0f}, {1.0f, 0.0f}, {}, 0.0f, 0};
+    EXPECT_NEAR(setup.take().maxJointError, std::sqrt(8.0), 1e-12);
+    joint.flags |= JointInfo::spring;
+    EXPECT_NEAR(setup.take().maxJointError, 0.0, 1e-12) << "a spring may have any angle";
+}
+
+TEST(Measure, OfAPrismaticJointIsHowFarItIsOffItsAxisOrOutsideItsLimit) {
+    HandMade setup;
+    setup.addBody(BodyType::Static, {});
+    setup.motions[0].rotation = {0.0f, 1.0f};  // its axis x points up in the world
+    setup.addBody(BodyType::Dynamic, {0.25f, 3.0f}, 1.0f);
+    setup.motions[1].rotation = {0.0f, 1.0f};
+    JointInfo& joint = setup.addJoint(JointKind::Prismatic, 3, {}, 5, {});
+    joint.reference = {1.0f, 0.0f};
+    joint.target = {1.0f, 0.0f};
+    EXPECT_NEAR(setup.take().maxJointError, 0.25, 1e-12);
+    joint.flags |= JointInfo::limit;
+    joint.lower = -1.0f;
+    joint.upper = 2.5f;
+    EXPECT_NEAR(setup.take().maxJointError, 0.5, 1e-12);
+    joint.upper = 4.0f;
+    joint.target = {0.0f, 1.0f};  // now along −x in the world: 3 m off, at −0.25
+    EXPECT_NEAR(setup.take().maxJointError, 3.0, 1e-12);
+}
+
 TEST(Measure, AgreesWithAllPairsOnAScatterOfDiscs) {
     HandMade setup;
     std::uint64_t state = 99;

@@ -39,7 +39,8 @@ std::string refusal(std::span<const std::byte> bytes) {
 }
 
 TEST(Snapshot, HoldsTheStateExactly) {
-    for (const char* scene : {"mixed", "sandbox", "hinges", "joint_grid:n=6", "ballistic"}) {
+    for (const char* scene :
+         {"mixed", "sandbox", "hinges", "joint_grid:n=6", "ballistic"}) {
         World world = worldOf(scene);
         for (int tick = 0; tick < 40; ++tick) world.step(playersScript(world));
         const std::vector<std::byte> bytes = world.save();
@@ -289,6 +290,18 @@ TEST(Snapshot, ThatContradictsItselfIsRefusedByRecordAndField) {
     expect("joint 0 upper", [](WorldState& s) {
         s.joints[0].flags |= JointInfo::limit;
         s.joints[0].upper = 4.0f;
+    });
+    expect("joint 0 flags", [](WorldState& s) {
+        s.joints[0].flags = static_cast<std::uint32_t>(JointKind::Weld) | JointInfo::limit;
+    });
+    expect("joint 0 target", [](WorldState& s) {
+        s.joints[0].flags = static_cast<std::uint32_t>(JointKind::Prismatic);
+        s.joints[0].target = {0.5f, 0.5f};
+    });
+    expect("joint 0 lower", [](WorldState& s) {
+        s.joints[0].flags = static_cast<std::uint32_t>(JointKind::Prismatic) | JointInfo::limit;
+        s.joints[0].target = {0.0f, 1.0f};
+        s.joints[0].lower = -2.0f * caps::maxJointLength;
     });
     expect("world maxCommandsPerTick", [](WorldState& s) { s.info().maxCommandsPerTick = 0; });
     expect("world maxPlayers", [](WorldState& s) { s.info().maxPlayers = 1u << 20; });
