@@ -81,6 +81,8 @@ enum JointKind {
   revolute @0;  # two bodies share a point
   distance @1;  # two points keep a distance, or a range of it
   mouse @2;     # a point of body B is drawn to `target` with a bounded force
+  weld @3;      # two bodies share a point and an angle
+  prismatic @4; # a point of body B slides along `axis`, neither body turns against the other
 }
 
 struct Joint {
@@ -98,7 +100,8 @@ struct Joint {
     x @7 :Float32;
     y @8 :Float32;
   }
-  reference :group {                  # revolute: rotation of B relative to A at coordinate 0
+  reference :group {                  # rotation of B relative to A: revolute: at coordinate 0;
+                                      # weld, prismatic: the one that is held
     c @9 :Float32 = 1;
     s @10 :Float32;
   }
@@ -115,13 +118,17 @@ struct Joint {
   }
   limit :group {
     enabled @18 :Bool;
-    lower @19 :Float32;               # rad, or m for a distance joint
+    lower @19 :Float32;               # rad, or m for a distance or prismatic joint
     upper @20 :Float32;
   }
   motor :group {
     enabled @21 :Bool;
     speed @22 :Float32;               # rad/s or m/s
     maxEffort @23 :Float32;           # N m or N
+  }
+  axis :group {                       # prismatic: its direction in the frame of body A, unit vector
+    c @24 :Float32 = 1;
+    s @25 :Float32;
   }
 }
 

@@ -23,8 +23,8 @@ template <>
 inline constexpr auto wordsOf<BodyType> = std::to_array<std::string_view>({"static", "kinematic",
                                                                            "dynamic"});
 template <>
-inline constexpr auto wordsOf<JointKind> = std::to_array<std::string_view>({"revolute", "distance",
-                                                                            "mouse"});
+inline constexpr auto wordsOf<JointKind> =
+    std::to_array<std::string_view>({"revolute", "distance", "mouse", "weld", "prismatic"});
 
 template <class Visitor>
 void visitFields(Visitor& v, std::type_identity<Vec2>) {
@@ -112,6 +112,7 @@ void visitFields(Visitor& v, std::type_identity<JointDef>) {
     v.field("anchorA", &JointDef::anchorA);
     v.field("anchorB", &JointDef::anchorB);
     v.field("reference", &JointDef::reference);
+    v.field("axis", &JointDef::axis);
     v.field("length", &JointDef::length);
     v.field("target", &JointDef::target);
     v.field("maxForce", &JointDef::maxForce);

@@ -175,6 +175,7 @@ void put(schema::Joint::Builder to, const JointDef& joint) {
     putPoint(to.getAnchorA(), joint.anchorA);
     putPoint(to.getAnchorB(), joint.anchorB);
     putRotation(to.getReference(), joint.reference);
+    putRotation(to.getAxis(), joint.axis);
     to.setLength(joint.length);
     putPoint(to.getTarget(), joint.target);
     to.setMaxForce(joint.maxForce);
@@ -195,13 +196,14 @@ void put(schema::Joint::Builder to, const JointDef& joint) {
 JointDef readJoint(Reading& in, schema::Joint::Reader from) {
     JointDef joint;
     joint.id = from.getId();
-    joint.kind = in.choice("kind", from.getKind(), JointKind::Mouse);
+    joint.kind = in.choice("kind", from.getKind(), JointKind::Prismatic);
     joint.collideConnected = from.getCollideConnected();
     joint.bodyA = from.getBodyA();
     joint.bodyB = from.getBodyB();
     joint.anchorA = in.point("anchorA", from.getAnchorA());
     joint.anchorB = in.point("anchorB", from.getAnchorB());
     joint.reference = in.rotation("reference", from.getReference());
+    joint.axis = in.rotation("axis", from.getAxis());
     joint.length = in.real("length", from.getLength());
     joint.target = in.point("target", from.getTarget());
     joint.maxForce = in.real("maxForce", from.getMaxForce());

@@ -394,9 +394,9 @@ TEST(CodecLimits, ValuesBeyondAnEnumAreRefused) {
     EXPECT_EQ(answerTo(Frame{0, {{0, 1, spawn}}, {}, 0, 0}),
               "Frame.commands[0].spawn.bodies[1].shapes[0].kind: unknown value 4");
     spawn = samples::sampleSpawn();
-    spawn.joints[0].kind = static_cast<JointKind>(3);
+    spawn.joints[0].kind = static_cast<JointKind>(5);
     EXPECT_EQ(answerTo(Frame{0, {{0, 1, spawn}}, {}, 0, 0}),
-              "Frame.commands[0].spawn.joints[0].kind: unknown value 3");
+              "Frame.commands[0].spawn.joints[0].kind: unknown value 5");
 }
 
 TEST(CodecLimits, AnUnknownActionIsRefused) {

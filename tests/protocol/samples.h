@@ -92,13 +92,14 @@ inline BodyDef randomBody(Draw& draw, std::size_t mostShapes = 3) {
 inline JointDef randomJoint(Draw& draw) {
     JointDef joint;
     joint.id = draw.word();
-    joint.kind = static_cast<JointKind>(draw.below(3));
+    joint.kind = static_cast<JointKind>(draw.below(5));
     joint.collideConnected = draw.coin();
     joint.bodyA = draw.word();
     joint.bodyB = draw.word();
     joint.anchorA = draw.point();
     joint.anchorB = draw.point();
     joint.reference = {draw.real(), draw.real()};
+    joint.axis = {draw.real(), draw.real()};
     joint.length = draw.real();
     joint.target = draw.point();
     joint.maxForce = draw.real();

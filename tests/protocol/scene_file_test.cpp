@@ -99,7 +99,16 @@ Scene fullScene() {
     mouse.target = {5.0f, 6.0f};
     mouse.maxForce = 100.0f;
     mouse.spring = {true, 5.0f, 0.7f};
-    scene.joints = {hinge, rod, mouse};
+    JointDef weld;
+    weld.kind = JointKind::Weld;
+    weld.bodyB = 3;
+    weld.spring = {true, 3.0f, 0.25f};
+    JointDef slide;
+    slide.kind = JointKind::Prismatic;
+    slide.bodyB = 3;
+    slide.axis = {-0.6f, 0.8f};
+    slide.limit = {true, -2.5f, 0.5f};
+    scene.joints = {hinge, rod, mouse, weld, slide};
     scene.players.emplace();
     scene.players->body = sleeper;
     scene.players->body->asleep = false;
