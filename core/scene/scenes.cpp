@@ -54,6 +54,21 @@ JointDef hingeAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, V
     return joint;
 }
 
+JointDef weldAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point) {
+    JointDef joint = hingeAt(scene, bodyA, bodyB, point);
+    joint.kind = JointKind::Weld;
+    return joint;
+}
+
+JointDef slideAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point,
+                 Vec2 along) {
+    JointDef joint = hingeAt(scene, bodyA, bodyB, point);
+    joint.kind = JointKind::Prismatic;
+    const Vec2 axis = normalized(unrotate(scene.bodies[bodyA].rotation, along));
+    joint.axis = {axis.x, axis.y};
+    return joint;
+}
+
 JointDef rodBetween(const Scene& scene, std::uint32_t bodyA, Vec2 localA, std::uint32_t bodyB,
                     Vec2 localB) {
     const BodyDef& a = scene.bodies[bodyA];

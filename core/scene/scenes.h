@@ -32,6 +32,7 @@ Scene stack(Values values);
 
 // Everything at once.
 Scene hinges(Values values);
+Scene joints(Values values);
 Scene mixed(Values values);
 Scene sandbox(Values values);
 
@@ -51,6 +52,14 @@ void addTrough(std::vector<ShapeDef>& shapes, std::uint32_t halfWidth, std::uint
 /// A revolute joint of two bodies of the scene about a point of the world; its coordinate is 0 as
 /// the bodies stand, and their shapes do not touch each other.
 JointDef hingeAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point);
+
+/// A weld of two bodies at a point of the world, as they stand.
+JointDef weldAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point);
+
+/// A prismatic joint through a point of the world along a direction of the world, which needs no
+/// unit length; its coordinate is 0 as the bodies stand.
+JointDef slideAt(const Scene& scene, std::uint32_t bodyA, std::uint32_t bodyB, Vec2 point,
+                 Vec2 along);
 
 /// A distance joint between the points `localA` and `localB`, as long as the bodies stand apart.
 JointDef rodBetween(const Scene& scene, std::uint32_t bodyA, Vec2 localA, std::uint32_t bodyB,

@@ -65,6 +65,7 @@ std::vector<GoldenRun> goldenRuns() {
          600,
          silence,
          true},
+        {"joints", "welds and slides with every part", {0, 1, 60, 240, 600}, 600},
         {"mixed", "every shape, joint, filter and kind of body", {0, 1, 60, 240, 600}, 600},
         {"sandbox",
          "players who join, push, grab, spawn, remove and leave",

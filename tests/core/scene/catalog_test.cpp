@@ -271,9 +271,8 @@ TEST(Catalog, NamesWhatIsWrongAndWhatThereIsInstead) {
     EXPECT_EQ(
         sentenceFor("pyrmaid"),
         "there is no scene 'pyrmaid'; there are ballistic, chain, compounds, double_pendulum, "
-        "hinges, "
-        "joint_grid, many_pyramids, mixed, pendulum, pyramid, sandbox, small, smash, stack, "
-        "tumbler, washer");
+        "hinges, joint_grid, joints, many_pyramids, mixed, pendulum, pyramid, sandbox, small, "
+        "smash, stack, tumbler, washer");
     EXPECT_EQ(sentenceFor("many_pyramids:bse=1"),
               "many_pyramids has no parameter 'bse'; it has rows, columns, base");
     EXPECT_EQ(sentenceFor("mixed:base=1"), "mixed has no parameter 'base'; it has none");

@@ -40,7 +40,7 @@ std::string refusal(std::span<const std::byte> bytes) {
 
 TEST(Snapshot, HoldsTheStateExactly) {
     for (const char* scene :
-         {"mixed", "sandbox", "hinges", "joint_grid:n=6", "ballistic"}) {
+         {"mixed", "sandbox", "hinges", "joints", "joint_grid:n=6", "ballistic"}) {
         World world = worldOf(scene);
         for (int tick = 0; tick < 40; ++tick) world.step(playersScript(world));
         const std::vector<std::byte> bytes = world.save();
