@@ -4,6 +4,9 @@
 #include <array>
 #include <bit>
 
+#include "core/math/lanes.h"
+#include "core/parallel/over_range.h"
+
 namespace huestep {
 
 namespace {
@@ -13,6 +16,8 @@ constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits, as speeds 
 constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
 constexpr std::uint32_t joinGrain = 128;
+constexpr std::uint32_t entryGrain = 512;
+constexpr std::size_t joinAllFrom = 16;       // a part of all shapes
 constexpr std::uint32_t joinSerially = 1024;  // entries: fewer are joined before a team is awake
 constexpr std::uint32_t sparseLevel = 16;     // entries: a level of so few is read whole
 constexpr float farthestTravel = 1000.0f;     // m: no fat box may outgrow the widest cell
@@ -74,12 +79,9 @@ Bounds fattened(const Bounds& tight, Vec2 travel) {
     return fat;
 }
 
-bool mayPair(const ShapeProxy& a, const ShapeProxy& b, std::span<const ShapePair> forbidden) {
-    if (a.body == b.body || !(a.dynamic || b.dynamic)) return false;
-    if (!mayTouch(a.filter, b.filter)) return false;
-    if (!(a.jointed && b.jointed)) return true;
-    const ShapePair bodies{std::min(a.body, b.body), std::max(a.body, b.body)};
-    return !std::binary_search(forbidden.begin(), forbidden.end(), bodies);
+bool isForbidden(std::uint32_t bodyA, std::uint32_t bodyB, std::span<const ShapePair> forbidden) {
+    const ShapePair bodies{std::min(bodyA, bodyB), std::max(bodyA, bodyB)};
+    return std::binary_search(forbidden.begin(), forbidden.end(), bodies);
 }
 
 ShapePair ordered(std::uint32_t a, std::uint32_t b) {
@@ -96,45 +98,64 @@ void sortPairs(std::vector<ShapePair>& pairs, std::size_t shapeCount,
     scratch.resize(pairs.size());
     for (const ShapePair& p : pairs) scratch[next[p.a]++] = p;
     for (std::size_t i = 0; i < shapeCount; ++i) {
-        std::sort(scratch.begin() + start[i], scratch.begin() + start[i + 1]);
+        // A handful mostly: by insertion. What is crowded is sorted as anything large is.
+        const auto first = scratch.begin() + start[i], last = scratch.begin() + start[i + 1];
+        if (last - first > 16) {
+            std::sort(first, last);
+            continue;
+        }
+        for (auto at = first; at != last; ++at) {
+            const ShapePair pair = *at;
+            auto to = at;
+            for (; to != first && pair.b < (to - 1)->b; --to) *to = *(to - 1);
+            *to = pair;
+        }
     }
     pairs.swap(scratch);
 }
 
 }  // namespace
 
-void markAlone(std::span<ShapeProxy> proxies) {
-    constexpr std::size_t mostKinds = 64;  // each is compared with each
+void sortIntoKinds(std::span<ShapeProxy> proxies) {
     struct Kind {
-        Filter filter;
-        bool dynamic = false;
-        std::uint32_t body = 0;
+        const ShapeProxy* first = nullptr;
         bool manyBodies = false;
         bool alone = true;
     };
-    for (ShapeProxy& p : proxies) p.alone = false;
     std::vector<Kind> kinds;
-    const auto kindOf = [&](const ShapeProxy& p) {
-        return std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) {
-            return k.filter == p.filter && k.dynamic == p.dynamic;
-        });
+    std::size_t last = 0;  // shapes of a kind come in runs
+    const auto isOf = [&](const ShapeProxy& p, const Kind& k) {
+        return k.first->filter == p.filter && k.first->dynamic == p.dynamic &&
+               k.first->jointed == p.jointed;
     };
-    for (const ShapeProxy& p : proxies) {
-        const auto known = kindOf(p);
-        if (known != kinds.end()) {
-            known->manyBodies = known->manyBodies || known->body != p.body;
-        } else {
-            if (kinds.size() == mostKinds) return;
-            kinds.push_back({p.filter, p.dynamic, p.body});
+    for (ShapeProxy& p : proxies) {
+        if (last == kinds.size() || !isOf(p, kinds[last])) {
+            for (last = 0; last < kinds.size() && !isOf(p, kinds[last]);) ++last;
         }
+        if (last == kinds.size()) {
+            if (last == ShapeProxy::unknownKind) {
+                for (ShapeProxy& all : proxies) {
+                    all.kind = ShapeProxy::unknownKind;
+                    all.alone = false;
+                }
+                return;
+            }
+            kinds.push_back({&p});
+        }
+        Kind& kind = kinds[last];
+        kind.manyBodies = kind.manyBodies || kind.first->body != p.body;
+        p.kind = static_cast<std::uint8_t>(last);
     }
     for (Kind& a : kinds) {
         for (const Kind& b : kinds) {
             if (&a == &b && !a.manyBodies) continue;
-            if (mayTouch(a.filter, b.filter) && (a.dynamic || b.dynamic)) a.alone = false;
+            if (mayTouch(a.first->filter, b.first->filter) &&
+                (a.first->dynamic || b.first->dynamic)) {
+                a.alone = false;
+            }
         }
     }
-    for (ShapeProxy& p : proxies) p.alone = kindOf(p)->alone;
+    for (ShapeProxy& p : proxies) p.alone = kinds[p.kind].alone;
 }
 
 void BroadPhase::clear() {
@@ -145,20 +166,96 @@ void BroadPhase::clear() {
     m_isMoved.clear();
 }
 
-void BroadPhase::rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel,
-                            std::span<const ShapeProxy> proxies) {
-    m_fat.resize(tight.size());
-    m_isMoved.assign(tight.size(), 0);
-    m_entries.clear();
-    for (std::uint32_t i = 0; i < tight.size(); ++i) {
-        if (proxies[i].alone) continue;
-        m_fat[i] = fattened(tight[i], travel[i]);
-        m_entries.push_back({keyOf(m_fat[i]), i, m_fat[i]});
+BroadPhase::Entry BroadPhase::entryOf(std::uint32_t shape, const ShapeProxy& proxy) const {
+    const Bounds& box = m_fat[shape];
+    return {box.low.x,   box.low.y,  -box.high.x,
+            -box.high.y, keyOf(box), shape | (static_cast<std::uint32_t>(proxy.kind) << 24),
+            proxy.body};
+}
+
+void BroadPhase::learnKinds(std::span<const ShapeProxy> proxies) {
+    std::array<const ShapeProxy*, ShapeProxy::unknownKind> of{};
+    for (const ShapeProxy& p : proxies) {
+        if (p.kind < of.size()) of[p.kind] = &p;
     }
-    std::sort(m_entries.begin(), m_entries.end(), [](const Entry& a, const Entry& b) {
-        return a.key != b.key ? a.key < b.key : a.shape < b.shape;
+    for (std::size_t a = 0; a < of.size(); ++a) {
+        m_mayPair[a] = m_mayForbid[a] = 0;
+        for (std::size_t b = 0; b < of.size() && of[a] != nullptr; ++b) {
+            if (of[b] == nullptr || !mayTouch(of[a]->filter, of[b]->filter)) continue;
+            if (!of[a]->dynamic && !of[b]->dynamic) continue;
+            m_mayPair[a] |= std::uint64_t{1} << b;
+            if (of[a]->jointed && of[b]->jointed) m_mayForbid[a] |= std::uint64_t{1} << b;
+        }
+    }
+}
+
+bool BroadPhase::mayPair(const Entry& a, const Entry& b, std::span<const ShapeProxy> proxies,
+                         std::span<const ShapePair> forbidden) const {
+    if (a.body == b.body) return false;
+    const std::uint32_t kindA = a.kind(), kindB = b.kind();
+    if (kindA < ShapeProxy::unknownKind && kindB < ShapeProxy::unknownKind) {
+        if ((m_mayPair[kindA] >> kindB & 1) == 0) return false;
+        return (m_mayForbid[kindA] >> kindB & 1) == 0 || !isForbidden(a.body, b.body, forbidden);
+    }
+    const ShapeProxy& p = proxies[a.shape()];
+    const ShapeProxy& q = proxies[b.shape()];
+    if (!(p.dynamic || q.dynamic) || !mayTouch(p.filter, q.filter)) return false;
+    return !(p.jointed && q.jointed) || !isForbidden(a.body, b.body, forbidden);
+}
+
+/// New fat boxes for all, so that they run out together and not a few every tick.
+void BroadPhase::rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel,
+                            std::span<const ShapeProxy> proxies, Executor* executor) {
+    if (m_fat.size() != tight.size()) {
+        m_fat.resize(tight.size());
+        m_isMoved.assign(tight.size(), 0);
+        m_entries.clear();
+        for (std::uint32_t i = 0; i < tight.size(); ++i) {
+            if (!proxies[i].alone) m_entries.push_back({0, 0, 0, 0, 0, i, 0});
+        }
+        learnKinds(proxies);
+    }
+    overRange(executor, m_entries.size(), entryGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const std::uint32_t shape = m_entries[i].shape();
+            m_fat[shape] = fattened(tight[shape], travel[shape]);
+            m_entries[i] = entryOf(shape, proxies[shape]);
+        }
     });
+    sortEntries();
     findLevels();
+}
+
+/// Sorts all entries by key: least significant digit first, over the bits in which keys differ.
+void BroadPhase::sortEntries() {
+    struct Place {
+        std::uint64_t key;
+        std::uint32_t entry;
+    };
+    constexpr int digitBits = 8;
+    const std::size_t count = m_entries.size();
+    std::vector<Place> places(count), next(count);
+    std::uint64_t differ = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        places[i] = {m_entries[i].key, i};
+        differ |= m_entries[i].key ^ m_entries[0].key;
+    }
+    for (int shift = 0; shift < 64; shift += digitBits) {
+        if ((differ >> shift & 0xff) == 0) continue;
+        std::array<std::uint32_t, 256> start{};
+        for (const Place& p : places) ++start[p.key >> shift & 0xff];
+        std::uint32_t sum = 0;
+        for (std::uint32_t& s : start) {
+            const std::uint32_t of = s;
+            s = sum;
+            sum += of;
+        }
+        for (const Place& p : places) next[start[p.key >> shift & 0xff]++] = p;
+        places.swap(next);
+    }
+    m_entryScratch.resize(count);
+    for (std::size_t i = 0; i < count; ++i) m_entryScratch[i] = m_entries[places[i].entry];
+    m_entries.swap(m_entryScratch);
 }
 
 void BroadPhase::findLevels() {
@@ -171,17 +268,16 @@ void BroadPhase::findLevels() {
 }
 
 /// Takes the moved entries out, sorts them by their new cells, and merges them in again.
-void BroadPhase::moveEntries(std::span<const std::uint32_t> moved) {
-    const auto before = [](const Entry& a, const Entry& b) {
-        return a.key != b.key ? a.key < b.key : a.shape < b.shape;
-    };
+void BroadPhase::moveEntries(std::span<const std::uint32_t> moved,
+                             std::span<const ShapeProxy> proxies) {
+    const auto before = [](const Entry& a, const Entry& b) { return a.key < b.key; };
     std::vector<Entry> changed;
     changed.reserve(moved.size());
     for (const std::uint32_t shape : moved) {
-        changed.push_back({keyOf(m_fat[shape]), shape, m_fat[shape]});
+        changed.push_back(entryOf(shape, proxies[shape]));
     }
     std::sort(changed.begin(), changed.end(), before);
-    std::erase_if(m_entries, [this](const Entry& e) { return m_isMoved[e.shape] != 0; });
+    std::erase_if(m_entries, [this](const Entry& e) { return m_isMoved[e.shape()] != 0; });
     m_entryScratch.resize(m_entries.size() + changed.size());
     std::merge(m_entries.begin(), m_entries.end(), changed.begin(), changed.end(),
                m_entryScratch.begin(), before);
@@ -189,12 +285,28 @@ void BroadPhase::moveEntries(std::span<const std::uint32_t> moved) {
     findLevels();
 }
 
+/// The box whose overlaps are wanted: highs, and lows negated.
+struct BroadPhase::Query {
+    explicit Query(const Entry& e) : Query(e.lowX, e.lowY, e.minusHighX, e.minusHighY) {}
+    explicit Query(const Bounds& b) : Query(b.low.x, b.low.y, -b.high.x, -b.high.y) {}
+
+    [[nodiscard]] bool overlaps(const Entry& e) const {
+        return allSet(loadLanes<4>(&e.lowX) <= m_limits);
+    }
+
+ private:
+    Query(float lowX, float lowY, float minusHighX, float minusHighY)
+        : m_limits{-minusHighX, -minusHighY, -lowX, -lowY} {}
+    LaneF<4> m_limits;
+};
+
 /// Calls `visit(entry)` for the entries of a level whose boxes overlap `box`.
 template <class Visit>
 void BroadPhase::visitOverlaps(const Level& level, const Bounds& box, Visit visit) const {
+    const Query query(box);
     const auto scan = [&](std::uint32_t from, std::uint32_t to, std::uint64_t lastKey) {
         for (std::uint32_t i = from; i < to && m_entries[i].key <= lastKey; ++i) {
-            if (overlaps(m_entries[i].box, box)) visit(m_entries[i]);
+            if (query.overlaps(m_entries[i])) visit(m_entries[i]);
         }
     };
     const Cells cells = cellsAround(level.level, box);
@@ -249,16 +361,17 @@ void BroadPhase::joinBlock(std::uint32_t begin, std::uint32_t end,
     // Tests entries from `j` on up to `lastKey`. Most runs are short and hits hard to foresee: each
     // is written down and counted only if it overlaps, without a branch.
     const auto join = [&](const Entry& e, std::uint32_t j, std::uint64_t lastKey) {
+        const Query query(e);
         while (j < entries.size() && entries[j].key <= lastKey) {
             std::size_t hits = 0;
             for (; hits < near.size() && j < entries.size() && entries[j].key <= lastKey; ++j) {
                 near[hits] = j;
-                hits += overlaps(e.box, entries[j].box) ? 1u : 0u;
+                hits += query.overlaps(entries[j]) ? 1u : 0u;
             }
             for (std::size_t k = 0; k < hits; ++k) {
-                const std::uint32_t other = entries[near[k]].shape;
-                if (mayPair(proxies[e.shape], proxies[other], forbidden)) {
-                    out.push_back(ordered(e.shape, other));
+                const Entry& other = entries[near[k]];
+                if (mayPair(e, other, proxies, forbidden)) {
+                    out.push_back(ordered(e.shape(), other.shape()));
                 }
             }
         }
@@ -279,7 +392,8 @@ void BroadPhase::joinBlock(std::uint32_t begin, std::uint32_t end,
                 join(e, level.begin, entries[level.end - 1].key);
                 continue;
             }
-            const Cells cells = cellsAround(level.level, e.box);
+            const Cells cells =
+                cellsAround(level.level, {{e.lowX, e.lowY}, {-e.minusHighX, -e.minusHighY}});
             for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
                 Cursor& cursor = coarser[l][static_cast<std::uint64_t>(row) % rowsAtOnce];
                 join(e, cursor.first(entries, keyOf(level.level, row, cells.column0)),
@@ -310,13 +424,13 @@ void BroadPhase::joinMoved(std::span<const std::uint32_t> moved,
                            std::span<const ShapePair> forbidden, std::vector<ShapePair>& out) {
     std::vector<ShapePair> found;
     for (const std::uint32_t shape : moved) {
+        const Entry mine = entryOf(shape, proxies[shape]);
         for (const Level& level : m_levels) {
             visitOverlaps(level, m_fat[shape], [&](const Entry& other) {
+                const std::uint32_t s = other.shape();
                 // Two moved shapes find each other: the lower one keeps the pair.
-                if (other.shape == shape || (m_isMoved[other.shape] && other.shape < shape)) return;
-                if (mayPair(proxies[shape], proxies[other.shape], forbidden)) {
-                    found.push_back(ordered(shape, other.shape));
-                }
+                if (s == shape || (m_isMoved[s] && s < shape)) return;
+                if (mayPair(mine, other, proxies, forbidden)) found.push_back(ordered(shape, s));
             });
         }
     }
@@ -333,29 +447,28 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
                         std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                         std::span<const ShapePair> forbidden, Executor* executor) {
     std::vector<ShapePair> fresh;
-    if (m_fat.size() != tight.size()) {
-        rebuildAll(tight, travel, proxies);
-        m_movedCount = static_cast<std::uint32_t>(m_entries.size());
-        joinAll(proxies, forbidden, executor, fresh);
-        m_pairs.swap(fresh);
-        return true;
+    const bool first = m_fat.size() != tight.size();
+    if (!first && moved.empty()) {
+        m_movedCount = 0;
+        return false;
     }
-    m_movedCount = static_cast<std::uint32_t>(moved.size());
-    if (moved.empty()) return false;
-    for (const std::uint32_t shape : moved) {
-        m_fat[shape] = fattened(tight[shape], travel[shape]);
-        m_isMoved[shape] = 1;
-    }
-    moveEntries(moved);
     // A query searches every level from its top, a step of the join moves a cursor: the join of all
-    // costs about as much as queries of a sixteenth. Either way the same pairs come out.
-    if (moved.size() * 16 > m_entries.size()) {
+    // costs about as much as queries of a part of them. Either way the pairs are right.
+    if (first || moved.size() * joinAllFrom > m_entries.size()) {
+        rebuildAll(tight, travel, proxies, executor);
+        m_movedCount = static_cast<std::uint32_t>(first ? m_entries.size() : moved.size());
         joinAll(proxies, forbidden, executor, fresh);
     } else {
+        m_movedCount = static_cast<std::uint32_t>(moved.size());
+        for (const std::uint32_t shape : moved) {
+            m_fat[shape] = fattened(tight[shape], travel[shape]);
+            m_isMoved[shape] = 1;
+        }
+        moveEntries(moved, proxies);
         joinMoved(moved, proxies, forbidden, fresh);
+        for (const std::uint32_t shape : moved) m_isMoved[shape] = 0;
     }
-    for (const std::uint32_t shape : moved) m_isMoved[shape] = 0;
-    const bool changed = fresh != m_pairs;
+    const bool changed = first || fresh != m_pairs;
     m_pairs.swap(fresh);
     return changed;
 }

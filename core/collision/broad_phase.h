@@ -9,6 +9,7 @@
 /// neighbours. Entries are sorted by (level, row, column), so neighbours are three contiguous runs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,9 @@ struct ShapeProxy {
     bool dynamic = false;
     bool jointed = false;  ///< the body has a joint that forbids contact with its other body
     bool alone = false;    ///< no other shape may pair with it: it stays out of the broad phase
+    std::uint8_t kind = unknownKind;  ///< equal filter, `dynamic` and `jointed`: equal kind
+
+    static constexpr std::uint8_t unknownKind = 64;
 };
 
 /// Places of two shapes, a < b.
@@ -35,9 +39,9 @@ struct ShapePair {
     friend auto operator<=>(const ShapePair&, const ShapePair&) = default;
 };
 
-/// Marks the shapes that filters and types keep from every other shape. Where filters are of very
-/// many kinds nobody is marked.
-void markAlone(std::span<ShapeProxy> proxies);
+/// Numbers the kinds of shapes, below `unknownKind`, and marks the shapes that filters and types
+/// keep from every other shape. Where there are very many kinds all stay unknown and nobody alone.
+void sortIntoKinds(std::span<ShapeProxy> proxies);
 
 class BroadPhase {
  public:
@@ -66,11 +70,19 @@ class BroadPhase {
     [[nodiscard]] std::uint32_t movedCount() const { return m_movedCount; }
 
  private:
-    struct Entry {
+    /// A fat box in its cell. Highs are negated: two boxes overlap if the one's four numbers are
+    /// nowhere above the four of the other's `Query`, which is one comparison in lanes.
+    struct alignas(32) Entry {
+        float lowX = 0, lowY = 0, minusHighX = 0, minusHighY = 0;
         std::uint64_t key = 0;
-        std::uint32_t shape = 0;
-        Bounds box;
+        std::uint32_t tag = 0;   // shape in bits 0 to 23, kind in bits 24 to 31
+        std::uint32_t body = 0;  // place
+
+        [[nodiscard]] std::uint32_t shape() const { return tag & 0xffffffu; }
+        [[nodiscard]] std::uint32_t kind() const { return tag >> 24; }
     };
+    static_assert(caps::maxShapes <= 0x1000000u);
+    struct Query;
     class Cursor;
     struct Level {
         int level = 0;
@@ -78,9 +90,14 @@ class BroadPhase {
         std::uint32_t end = 0;
     };
 
+    [[nodiscard]] Entry entryOf(std::uint32_t shape, const ShapeProxy& proxy) const;
+    void learnKinds(std::span<const ShapeProxy> proxies);
     void rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel,
-                    std::span<const ShapeProxy> proxies);
-    void moveEntries(std::span<const std::uint32_t> moved);
+                    std::span<const ShapeProxy> proxies, Executor* executor);
+    void moveEntries(std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies);
+    void sortEntries();
+    [[nodiscard]] bool mayPair(const Entry& a, const Entry& b, std::span<const ShapeProxy> proxies,
+                               std::span<const ShapePair> forbidden) const;
     void findLevels();
     template <class Visit>
     void visitOverlaps(const Level& level, const Bounds& box, Visit visit) const;
@@ -91,7 +108,9 @@ class BroadPhase {
     void joinMoved(std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                    std::span<const ShapePair> forbidden, std::vector<ShapePair>& out);
 
-    std::vector<Bounds> m_fat;     // by shape
+    std::vector<Bounds> m_fat;  // by shape
+    // By kind, a bit a kind: with whom it may pair at all, and where a joint may forbid that.
+    std::array<std::uint64_t, ShapeProxy::unknownKind> m_mayPair{}, m_mayForbid{};
     std::vector<Entry> m_entries;  // sorted by key, then shape
     std::vector<Level> m_levels;
     std::vector<ShapePair> m_pairs;

@@ -10,9 +10,8 @@ float cosineBetween(Rotation a, Rotation b) {
     return a.c * b.c + a.s * b.s;
 }
 
-Pose relativePose(const Contact& contact, const NarrowPhaseInput& in) {
-    return canonicalZero(
-        relative(in.motions[contact.bodyA].pose(), in.motions[contact.bodyB].pose()));
+Pose relativePose(std::uint32_t bodyA, std::uint32_t bodyB, const NarrowPhaseInput& in) {
+    return canonicalZero(relative(in.motions[bodyA].pose(), in.motions[bodyB].pose()));
 }
 
 bool boundsOverlap(const Contact& contact, const NarrowPhaseInput& in) {
@@ -107,7 +106,7 @@ ContactUpdate renewContact(Contact& contact, const NarrowPhaseInput& in) {
     const std::size_t oldCount = contact.pointCount;
     const ContactImpulses old = impulsesOf(contact);
     const std::uint16_t oldFeature[2] = {contact.feature[0], contact.feature[1]};
-    const Pose now = relativePose(contact, in);
+    const Pose now = relativePose(contact.bodyA, contact.bodyB, in);
     contact.turn = turnOf(in.motions[contact.bodyA].rotation);
     const Manifold manifold =
         collide(in.hulls[contact.placeA], in.hulls[contact.placeB], now, speculativeDistance);
@@ -124,6 +123,17 @@ ContactUpdate renewContact(Contact& contact, const NarrowPhaseInput& in) {
     }
     setImpulses(contact, matched);
     return manifold.count > 0 ? ContactUpdate::Fresh : ContactUpdate::Apart;
+}
+
+Manifold manifoldOf(std::uint32_t bodyA, std::uint32_t bodyB, std::uint32_t shapeA,
+                    std::uint32_t shapeB, const NarrowPhaseInput& in) {
+    return collide(in.hulls[shapeA], in.hulls[shapeB], relativePose(bodyA, bodyB, in),
+                   speculativeDistance);
+}
+
+void beginContact(Contact& contact, const Manifold& manifold, const NarrowPhaseInput& in) {
+    contact.turn = turnOf(in.motions[contact.bodyA].rotation);
+    setManifold(contact, relativePose(contact.bodyA, contact.bodyB, in), manifold);
 }
 
 }  // namespace huestep

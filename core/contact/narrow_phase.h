@@ -36,6 +36,14 @@ ContactUpdate updateContact(Contact& contact, const NarrowPhaseInput& in);
 /// The same for a contact that is known not to stay as it is.
 ContactUpdate renewContact(Contact& contact, const NarrowPhaseInput& in);
 
+/// The manifold of two shapes as they are now; no points where they do not touch. `bodyA` and
+/// `bodyB` are places of motions, `shapeA` and `shapeB` of hulls.
+Manifold manifoldOf(std::uint32_t bodyA, std::uint32_t bodyB, std::uint32_t shapeA,
+                    std::uint32_t shapeB, const NarrowPhaseInput& in);
+
+/// Gives a new contact its first manifold, that of `manifoldOf`.
+void beginContact(Contact& contact, const Manifold& manifold, const NarrowPhaseInput& in);
+
 /// Makes the manifold at the relative pose again, where it was dropped.
 void remakeManifold(Contact& contact, const Pose& relative, const NarrowPhaseInput& in);
 

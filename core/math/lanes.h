@@ -88,6 +88,15 @@ HUESTEP_INLINE Mask either(const Mask& a, const Mask& b) {
     return a | b;
 }
 
+HUESTEP_INLINE bool allSet(const Lanes<4>::Mask& mask) {
+#if defined(__SSE2__)
+    typedef float Bits __attribute__((vector_size(16)));
+    return __builtin_ia32_movmskps(reinterpret_cast<const Bits&>(mask)) == 15;
+#else
+    return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+#endif
+}
+
 /// −1 where the mask is set, 0 elsewhere.
 template <int W>
 HUESTEP_INLINE void storeMask(std::int32_t* to, const typename Lanes<W>::Mask& mask) {

@@ -16,6 +16,19 @@ void overRange(Executor* executor, std::size_t count, std::uint32_t grain, F&& f
     }
 }
 
+/// The same, block by block in the caller too: `f` gets at most `grain` indices at a time.
+template <class F>
+void overBlocks(Executor* executor, std::size_t count, std::uint32_t grain, F&& f) {
+    const auto n = static_cast<std::uint32_t>(count);
+    if (executor != nullptr && executor->threads() > 1 && n > grain) {
+        executor->forBlocks(n, grain, f);
+    } else {
+        for (std::uint32_t begin = 0; begin < n; begin += grain) {
+            f(begin, n - begin < grain ? n : begin + grain);
+        }
+    }
+}
+
 /// A place for the findings of each block of a range, so that none waits for another: the block
 /// that begins at `begin` owns place `begin / grain`.
 template <class T>

@@ -22,6 +22,10 @@ constexpr float pushSpeed = 3.0f;  // m/s
 constexpr std::uint32_t bodyGrain = 256;
 constexpr std::uint32_t blockGrain = 16;
 constexpr std::uint32_t jointGrain = 128;
+// A barrier costs as much as a pass over some hundred contacts.
+constexpr std::uint32_t sharedFrom = 192;
+constexpr std::uint32_t jointsAsLanes = 8;  // a joint one by one takes as long as so many in lanes
+
 /// Worker's share of [0, count): contiguous, sizes differing by at most one.
 struct Share {
     std::uint32_t begin, end;
@@ -32,6 +36,12 @@ struct Share {
         end = static_cast<std::uint32_t>(count * (w + 1) / n);
     }
 };
+
+/// Whether a colour is worth a barrier: by its size alone, whoever runs it.
+bool isShared(const ColourRun& run) {
+    return !isSerial(run.colour) &&
+           run.contactCount + run.pinCount + jointsAsLanes * run.jointCount >= sharedFrom;
+}
 
 }  // namespace
 
@@ -80,15 +90,12 @@ const SoftStep::Sweep SoftStep::solveSweep{solveJoint, &PinKernels::solve, &Cont
 const SoftStep::Sweep SoftStep::relaxSweep{solveJoint, &PinKernels::solve, &ContactKernels::relax};
 const SoftStep::Sweep SoftStep::restituteSweep{nullptr, nullptr, &ContactKernels::restitute};
 
-/// This worker's share of one colour.
+/// This worker's share of one colour; of a colour that is not shared, all of it on one.
 void SoftStep::sweepColour(const ColourRun& run, const Sweep& sweep, const JointPass& joint,
                            const Pass& pass, int worker, int workers) {
-    // Constraints of the overflow share bodies: one worker, one by one, in key order.
+    // Constraints of the overflow share bodies: one by one, in key order.
     const bool serial = isSerial(run.colour);
-    if (serial && worker != 0) return;
-    const auto shareOf = [&](std::uint32_t count) {
-        return serial ? Share(count, 0, 1) : Share(count, worker, workers);
-    };
+    const auto shareOf = [&](std::uint32_t count) { return Share(count, worker, workers); };
     SolverBody* bodies = m_bodies.data();
     const Share joints = shareOf(sweep.joint != nullptr ? run.jointCount : 0);
     for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
@@ -127,8 +134,15 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
     };
     const auto overColours = [&](const Sweep& sweep, const JointPass& joint) {
         for (std::uint32_t c = batch.firstColour; c < batch.endColour; ++c) {
-            sweepColour(plan.runs[c], sweep, joint, pass, worker, workers);
-            barrier();
+            // Colours too small to share go through one worker, one after another, without a
+            // barrier between: a hub has dozens of them.
+            const bool shared = workers > 1 && isShared(plan.runs[c]);
+            if (shared) {
+                sweepColour(plan.runs[c], sweep, joint, pass, worker, workers);
+            } else if (worker == 0) {
+                sweepColour(plan.runs[c], sweep, joint, pass, 0, 1);
+            }
+            if (c + 1 == batch.endColour || shared || isShared(plan.runs[c + 1])) barrier();
         }
     };
     const float h = pass.h;

@@ -153,7 +153,7 @@ void World::Data::rebuildShapes() {
         }
     }
     s.first[bodies] = shape;
-    markAlone(s.proxies);
+    sortIntoKinds(s.proxies);
 }
 
 }  // namespace huestep

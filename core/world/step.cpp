@@ -14,7 +14,7 @@ namespace {
 // meeting it at barriers costs more than it saves. Definitions alone decide.
 constexpr std::size_t parallelFrom = 512;
 constexpr std::uint32_t bodyGrain = 256;
-constexpr float travelTicks = 2.0f;  // how far ahead fat bounds look
+constexpr float travelTicks = 3.0f;  // how far ahead fat bounds look
 
 }  // namespace
 

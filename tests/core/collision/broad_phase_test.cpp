@@ -101,7 +101,7 @@ Scatter randomField(Random& random, std::size_t shapes, double span, bool allSiz
             proxy.jointed = proxy.jointed || p.a == proxy.body || p.b == proxy.body;
         }
     }
-    markAlone(field.proxies);
+    sortIntoKinds(field.proxies);
     return field;
 }
 
@@ -135,7 +135,7 @@ TEST(BroadPhase, MarksNobodyWhereFiltersAreOfVeryManyKinds) {
         proxies[i].filter.group = -1 - static_cast<std::int32_t>(i);
     }
     proxies[7].filter.mask = 0;
-    markAlone(proxies);
+    sortIntoKinds(proxies);
     for (const ShapeProxy& proxy : proxies) EXPECT_FALSE(proxy.alone);
 }
 
