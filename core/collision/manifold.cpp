@@ -1,5 +1,7 @@
 #include "core/collision/manifold.h"
 
+#include "core/math/lanes.h"
+
 namespace huestep {
 
 namespace {
@@ -78,6 +80,13 @@ ManifoldT<Real> hullAndDisc(const HullT<Real>& a, const HullT<Real>& b, Vec2T<Re
     return m;
 }
 
+/// Four points as two columns.
+void loadVectors(const Vec2* from, LaneF<4>& x, LaneF<4>& y) {
+    const LaneF<4> low = loadLanes<4>(&from[0].x), high = loadLanes<4>(&from[2].x);
+    x = __builtin_shufflevector(low, high, 0, 2, 4, 6);
+    y = __builtin_shufflevector(low, high, 1, 3, 5, 7);
+}
+
 /// The edge of `reference` whose normal separates `other` the most, and by how much.
 template <class Real>
 struct Axis {
@@ -96,6 +105,28 @@ Axis<Real> bestAxis(const HullT<Real>& reference, const HullT<Real>& other) {
             lowest = minOf(lowest, dot(n, other.vertices[at(j)] - v));
         }
         if (i == 0 || lowest > best.separation) best = {i, lowest};
+    }
+    return best;
+}
+
+/// Four edges of the reference at a time, in lanes; the same numbers.
+template <>
+Axis<float> bestAxis(const HullT<float>& reference, const HullT<float>& other) {
+    Axis<float> best;
+    for (int first = 0; first < reference.count; first += 4) {
+        LaneF<4> nx, ny, vx, vy;
+        loadVectors(&reference.normals[at(first)], nx, ny);
+        loadVectors(&reference.vertices[at(first)], vx, vy);
+        const auto distances = [&](Vec2 w) {
+            return nx * (splat<4>(w.x) - vx) + ny * (splat<4>(w.y) - vy);
+        };
+        LaneF<4> lowest = distances(other.vertices[0]);
+        for (int j = 1; j < other.count; ++j) {
+            lowest = minLanes(lowest, distances(other.vertices[at(j)]));
+        }
+        for (int i = first; i < reference.count && i < first + 4; ++i) {
+            if (i == 0 || lowest[i - first] > best.separation) best = {i, lowest[i - first]};
+        }
     }
     return best;
 }
@@ -255,6 +286,25 @@ HullT<Real> moved(const HullT<Real>& hull, const PoseT<Real>& pose) {
     for (int i = 0; i < hull.count; ++i) {
         out.vertices[at(i)] = transform(pose, hull.vertices[at(i)]);
         out.normals[at(i)] = rotate(pose.q, hull.normals[at(i)]);
+    }
+    return out;
+}
+
+/// Two vectors at a time, in lanes; the same numbers.
+template <>
+HullT<float> moved(const HullT<float>& hull, const PoseT<float>& pose) {
+    HullT<float> out;
+    out.count = hull.count;
+    out.radius = hull.radius;
+    const LaneF<4> c = splat<4>(pose.q.c);
+    const LaneF<4> s{-pose.q.s, pose.q.s, -pose.q.s, pose.q.s};
+    const LaneF<4> p{pose.p.x, pose.p.y, pose.p.x, pose.p.y};
+    const auto rotated = [&](const LaneF<4>& v) {
+        return c * v + s * __builtin_shufflevector(v, v, 1, 0, 3, 2);
+    };
+    for (int i = 0; i < hull.count; i += 2) {
+        storeLanes<4>(&out.vertices[at(i)].x, p + rotated(loadLanes<4>(&hull.vertices[at(i)].x)));
+        storeLanes<4>(&out.normals[at(i)].x, rotated(loadLanes<4>(&hull.normals[at(i)].x)));
     }
     return out;
 }

@@ -14,15 +14,12 @@ inline constexpr float speculativeDistance = 0.02f;  // m
 
 /// A touching pair of shapes. What `stateOf` reads is state; all else is an accelerator. While the
 /// solver holds the contact's row, the impulses in there are the current ones.
-struct Contact {
-    ShapeId shapeA = 0;  ///< the lower shape id
-    ShapeId shapeB = 0;
+struct alignas(64) Contact {
     std::uint32_t bodyA = 0;  ///< places in the world's arrays
     std::uint32_t bodyB = 0;
-    std::uint32_t placeA = 0;  ///< of the shapes
+    std::uint32_t placeA = 0;  ///< of the shapes, the one with the lower id first
     std::uint32_t placeB = 0;
-    float slack = 0;  ///< m: how far the bodies may move while a manifold of two points is kept
-    float turn = 0;   ///< body A's rotation when the manifold was made, see `turnOf`
+    float turn = 0;  ///< body A's rotation when the manifold was made, see `turnOf`
     std::uint16_t feature[2]{};
     std::uint8_t pointCount = 0;  ///< 0: not touching any more
 
@@ -45,6 +42,8 @@ struct Contact {
     }
 };
 
+static_assert(sizeof(Contact) == 192, "three cache lines");
+
 /// The impulses of a contact as the next step starts from them.
 struct ContactImpulses {
     std::array<float, 2> normal{};   ///< N·s, ≥ 0
@@ -66,9 +65,11 @@ inline void setImpulses(Contact& contact, const ContactImpulses& impulses) {
     contact.row.rollingImpulse = impulses.rolling;
 }
 
-/// The contact as state, with the impulses given: its own, or those of the solver's row.
-inline ContactState stateOf(const Contact& contact, const ContactImpulses& impulses) {
-    return {contact.shapeA,  contact.shapeB,   contact.relative(), contact.turn,
+/// The contact as state, with the ids of its shapes and the impulses given: its own, or those of
+/// the solver's row.
+inline ContactState stateOf(const Contact& contact, ShapeId shapeA, ShapeId shapeB,
+                            const ContactImpulses& impulses) {
+    return {shapeA,          shapeB,           contact.relative(), contact.turn,
             impulses.normal, impulses.tangent, impulses.rolling};
 }
 

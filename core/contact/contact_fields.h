@@ -37,7 +37,8 @@ struct ContactFields {
     T relativeC, relativeS;
     T reach;      ///< m: farthest point of either body that can turn, from its centre
     T roundness;  ///< m: the larger radius
-    T slack;      ///< m: how far the bodies may move while it is kept; −1: it is not
+    /// m: how far the bodies may move while it is kept; negative: a manifold that never is.
+    T slack;
 };
 
 }  // namespace huestep

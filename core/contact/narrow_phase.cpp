@@ -55,7 +55,8 @@ void setManifold(Contact& contact, const Pose& made, const Manifold& manifold) {
     row.normalX = n.x;
     row.normalY = n.y;
     // A single point is a vertex: it slides over the other shape as that turns.
-    row.slack = manifold.count < 2 ? -1.0f : contact.slack;
+    const float slack = row.slack < 0.0f ? -row.slack : row.slack;
+    row.slack = manifold.count < 2 ? -slack : slack;
     const float m = row.inverseMassA + row.inverseMassB;
     for (std::size_t i = 0; i < 2; ++i) {
         ContactPointFields<float>& p = contact.points[i];
@@ -93,14 +94,14 @@ void remakeManifold(Contact& contact, const Pose& relative, const NarrowPhaseInp
 }
 
 ContactUpdate updateContact(Contact& contact, const NarrowPhaseInput& in) {
-    if (boundsOverlap(contact, in) && mayRecycle(contact, in)) return ContactUpdate::Recycled;
+    if (contact.pointCount > 0 && boundsOverlap(contact, in) && mayRecycle(contact, in))
+        return ContactUpdate::Recycled;
     return renewContact(contact, in);
 }
 
 ContactUpdate renewContact(Contact& contact, const NarrowPhaseInput& in) {
     if (!boundsOverlap(contact, in)) {
         contact.pointCount = 0;
-        contact.row.slack = -1.0f;
         return ContactUpdate::Apart;
     }
     const std::size_t oldCount = contact.pointCount;

@@ -140,11 +140,26 @@ void SoftStep::preparePins(const Plan& plan, const SolverWorld& world, Range blo
     }
 }
 
+void SoftStep::prefetchContacts(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
+    for (std::uint32_t at = block * blockLanes; at < (block + 1) * blockLanes; ++at) {
+        const std::uint32_t place = plan.contactOfLane[at];
+        if (place == none) continue;
+        const char* from = reinterpret_cast<const char*>(&world.contacts[place]);
+        for (std::size_t line = 0; line < sizeof(Contact); line += 64) {
+            __builtin_prefetch(from + line);
+        }
+    }
+}
+
 void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world,
                              const ContactKernels& kernels, Range blocks,
                              ContactFeatures& features) {
     for (std::uint32_t block = blocks.begin; block < blocks.end; ++block) {
-        if (!world.rowsHold) makeBlock(plan, world, block);
+        if (!world.rowsHold) {
+            // Contacts lie anywhere: those of the next block are on their way while this is made.
+            if (block + 1 < blocks.end) prefetchContacts(plan, world, block + 1);
+            makeBlock(plan, world, block);
+        }
         features = features | m_blockFeatures[block];
     }
     if (blocks.begin == blocks.end) return;
@@ -228,8 +243,8 @@ void SoftStep::settleBlocks(const Plan& plan, const SolverWorld& world,
             const float approach = -p.approach[lane];
             if (!(p.maxNormalImpulse[lane] > 0.0f && approach > hitSpeed)) continue;
             if (!(approach > hit.approach)) continue;
-            hit.shapeA = contact.shapeA;
-            hit.shapeB = contact.shapeB;
+            hit.shapeA = world.shapes[contact.placeA].id;
+            hit.shapeB = world.shapes[contact.placeB].id;
             hit.point = world.motions[contact.bodyA].position + contact.anchorA(i);
             hit.normal = contact.normal();
             hit.approach = approach;

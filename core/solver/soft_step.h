@@ -41,6 +41,7 @@ struct SolverWorld {
     std::span<const JointInfo> joints;
     std::span<const ConstraintPlaces> jointBodies;  ///< places of each joint's two bodies
     std::span<JointImpulses> jointImpulses;
+    std::span<const ShapeInfo> shapes;
     std::span<const Contact> contacts;
     bool rowsHold = false;  ///< contact rows are those of the last solve, which had this very plan
     Vec2 gravity;
@@ -106,6 +107,7 @@ class SoftStep {
     void prepareJoints(const Plan& plan, const SolverWorld& world, Range joints);
     void prepareBlocks(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
                        Range blocks, ContactFeatures& features);
+    static void prefetchContacts(const Plan& plan, const SolverWorld& world, std::uint32_t block);
     void makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block);
     void settleBlocks(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
                       Range blocks, std::vector<ContactHit>& hits);

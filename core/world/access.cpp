@@ -55,7 +55,8 @@ void World::Data::contactsToState() const {
         const Contact& contact = acc.contacts[candidate.contact];
         const std::uint32_t lane = laneOf[candidate.contact];
         state.contacts.push_back(
-            stateOf(contact, lane == none ? impulsesOf(contact) : acc.solver.impulses(lane)));
+            stateOf(contact, state.shapes[contact.placeA].id, state.shapes[contact.placeB].id,
+                    lane == none ? impulsesOf(contact) : acc.solver.impulses(lane)));
     }
     contactsInState = true;
 }

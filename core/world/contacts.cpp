@@ -24,13 +24,11 @@ Contact contactOf(const ShapePair& pair, const Shapes& known, const WorldState& 
     const ShapeInfo& a = state.shapes[pair.a];
     const ShapeInfo& b = state.shapes[pair.b];
     Contact c;
-    c.shapeA = a.id;
-    c.shapeB = b.id;
     c.placeA = pair.a;
     c.placeB = pair.b;
     c.bodyA = known.proxies[pair.a].body;
     c.bodyB = known.proxies[pair.b].body;
-    c.slack = minOf(recycleMost, recyclePart * minOf(known.sizes[pair.a], known.sizes[pair.b]));
+    c.row.slack = minOf(recycleMost, recyclePart * minOf(known.sizes[pair.a], known.sizes[pair.b]));
     ContactFields<float>& row = c.row;
     row.inverseMassA = state.bodies[c.bodyA].inverseMass;
     row.inverseInertiaA = state.bodies[c.bodyA].inverseInertia;
@@ -48,6 +46,10 @@ Contact contactOf(const ShapePair& pair, const Shapes& known, const WorldState& 
 }
 
 }  // namespace
+
+ContactChange World::Data::changeOf(const Contact& contact) const {
+    return {state.shapes[contact.placeA].id, state.shapes[contact.placeB].id};
+}
 
 std::uint32_t World::Data::addContact(const Contact& contact) {
     Accelerators& acc = accelerators;
@@ -104,7 +106,7 @@ void World::Data::layOutCandidates() {
             if (!isActive(activity[contact.bodyA] | activity[contact.bodyB])) {
                 acc.candidates.push_back(*from);
             } else {
-                events.ends.push_back({contact.shapeA, contact.shapeB});
+                events.ends.push_back(changeOf(contact));
                 dropContact(from->contact);
             }
         }
@@ -162,12 +164,12 @@ void World::Data::collideAll(Simd simd, Executor* executor) {
                     acc.candidates.begin(), acc.candidates.end(), ShapePair{c.placeA, c.placeB},
                     [](const Candidate& x, const ShapePair& pair) { return x.pair < pair; });
                 at->contact = none;
-                events.ends.push_back({c.shapeA, c.shapeB});
+                events.ends.push_back(changeOf(c));
                 dropContact(contact);
             }
             for (const auto& [candidate, contact] : f.begun) {
                 acc.candidates[candidate].contact = addContact(contact);
-                events.begins.push_back({contact.shapeA, contact.shapeB});
+                events.begins.push_back(changeOf(contact));
             }
         }
     };

@@ -68,8 +68,8 @@ std::vector<ContactView> World::contactViews() const {
         const Pose a = d.state.motions[c.bodyA].pose();
         const Pose b = d.state.motions[c.bodyB].pose();
         ContactView view;
-        view.shapeA = c.shapeA;
-        view.shapeB = c.shapeB;
+        view.shapeA = d.state.shapes[c.placeA].id;
+        view.shapeB = d.state.shapes[c.placeB].id;
         view.normal = c.normal();
         view.pointCount = c.pointCount;
         view.colour = colours[candidate.contact];

@@ -46,6 +46,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
                             state.joints,
                             accelerators.shapes.jointBodies,
                             state.jointImpulses,
+                            state.shapes,
                             accelerators.contacts,
                             accelerators.rowsHold,
                             state.info().gravity,

@@ -122,6 +122,7 @@ struct World::Data {
     void layOutCandidates();
     std::uint32_t addContact(const Contact& contact);
     void dropContact(std::uint32_t contact);
+    [[nodiscard]] ContactChange changeOf(const Contact& contact) const;
     void collideAll(Simd simd, Executor* executor);
     void fetchImpulses(Executor* executor);
     bool wakeTouched(bool contactDisturbs);

@@ -16,10 +16,8 @@ class PairOfShapes {
  public:
     PairOfShapes(const ShapeDef& a, const ShapeDef& b)
         : m_hulls{hullOfDef<float>(a), hullOfDef<float>(b)} {
-        contact.shapeA = 1;
-        contact.shapeB = 2;
         contact.bodyB = contact.placeB = 1;
-        contact.slack = 0.05f;
+        contact.row.slack = 0.05f;
         for (const Hull& hull : m_hulls) {
             contact.row.roundness = maxOf(contact.row.roundness, hull.radius);
             for (std::size_t i = 0; i < static_cast<std::size_t>(hull.count); ++i) {
@@ -34,10 +32,8 @@ class PairOfShapes {
     void forgetAllButTheState() {
         const ContactState kept = state();
         Contact bare;
-        bare.shapeA = kept.shapeA;
-        bare.shapeB = kept.shapeB;
         bare.bodyB = bare.placeB = 1;
-        bare.slack = contact.slack;
+        bare.row.slack = contact.row.slack;
         bare.row.reach = contact.row.reach;
         bare.row.roundness = contact.row.roundness;
         bare.turn = kept.turn;
@@ -45,7 +41,7 @@ class PairOfShapes {
         contact = bare;
         remakeManifold(contact, kept.relative, input());
     }
-    [[nodiscard]] ContactState state() const { return stateOf(contact, impulsesOf(contact)); }
+    [[nodiscard]] ContactState state() const { return stateOf(contact, 1, 2, impulsesOf(contact)); }
 
     std::vector<BodyMotion> motions{2};
     Contact contact{};

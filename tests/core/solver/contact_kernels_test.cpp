@@ -129,7 +129,7 @@ TEST(ContactKernels, KeepTheManifoldsThatTheNarrowPhaseKeeps) {
             Contact& c = contacts[i];
             c.bodyA = c.placeA = 2 * i;
             c.bodyB = c.placeB = 2 * i + 1;
-            c.slack = random.betweenF(0.0, 0.05);
+            c.row.slack = random.betweenF(0.0, 0.05);
             c.row.reach = random.betweenF(0.0, 1.0);
             c.row.roundness = std::max(hulls[2 * i].radius, hulls[2 * i + 1].radius);
             motions[2 * i].position = random.point(-50.0, 50.0);
