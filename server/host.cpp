@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/scene/catalog.h"
 #include "protocol/journal.h"
 #include "server/log_writer.h"
 #include "server/recovery.h"
@@ -25,6 +26,12 @@ Result<ResumeKey> randomKey() {
     const int status = uv_random(nullptr, nullptr, key.data(), key.size(), 0, nullptr);
     if (status != 0) return Error{std::string("no random bytes: ") + uv_strerror(status)};
     return key;
+}
+
+/// Whether the catalogue has a script for a scene of this name.
+bool isScripted(const std::string& scene) {
+    const CatalogEntry* entry = findInCatalog(scene);
+    return entry != nullptr && entry->script != nullptr;
 }
 
 /// Only descriptors can run out here, before anything is opened; `Host::open` makes it a sentence.
@@ -166,9 +173,13 @@ Status Host::Inside::addSession(const SessionSpec& spec, Instant now) {
         LogLine("scene_kept")
             .with("session", spec.name)
             .with("text", folder + " holds a session of another scene, " + recovered->scene +
-                              ", which goes on; for " + spec.scene.name +
+                              ", which goes on" +
+                              (isScripted(recovered->scene) ? " without its script" : "") +
+                              "; for " + spec.scene.name +
                               " take another session name or data folder")
             .to(config.log, Severity::Warning);
+    } else {
+        recovered->start.script = spec.script;
     }
     for (const std::string& why : recovered->contents.refusedSnapshots) {
         LogLine("snapshot_refused")

@@ -26,6 +26,7 @@
 #include "core/parallel/executor.h"
 #include "core/result.h"
 #include "core/scene/scene.h"
+#include "core/scene/script.h"
 #include "protocol/messages.h"
 #include "server/hub.h"
 #include "server/limits.h"
@@ -37,6 +38,10 @@ namespace huestep::server {
 struct SessionSpec {
     std::string name;  ///< 1 to 64 of [a-z0-9_-]; also the folder's name
     Scene scene;       ///< used when the folder is new
+    /// What the host does to the scene by itself, tick by tick. Its commands are journaled like
+    /// any others; a session that is recovered goes on with it from its tick. It does not run where
+    /// the folder holds another scene.
+    Script script{};
 };
 
 struct HostConfig {

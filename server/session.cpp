@@ -27,6 +27,7 @@ Session::Session(SessionStart start, const Limits& limits, Instant now)
       m_epoch(start.epoch),
       m_limits(limits),
       m_world(std::move(start.world)),
+      m_script(std::move(start.script)),
       m_seats(m_name, start.epoch, start.key, limits),
       m_queue(limits),
       m_frames(limits.recentFrames, limits.recentBytes),
@@ -86,6 +87,11 @@ std::vector<Command> Session::gatherCommands(Instant now) {
         if (const auto* removed = std::get_if<RemovePlayer>(&command.action)) {
             m_queue.forget(removed->player);
         }
+    }
+    // The script's ids count on nobody else's bodies, its sequences follow on what the host said.
+    std::uint64_t sequence = sequenceIn(m_world, 0) + commands.size();
+    for (Action& action : m_script.actions(tick())) {
+        commands.push_back({0, ++sequence, std::move(action)});
     }
     // The world's own cap is of players' commands alone, as this one is.
     const std::uint32_t room =

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/script.h"
 #include "core/world/world.h"
 #include "protocol/journal.h"
 #include "protocol/messages.h"
@@ -29,6 +30,7 @@ struct SessionStart {
     SharedSnapshot base;                ///< newest snapshot, or the scene's world
     std::vector<protocol::Frame> tail;  ///< recorded frames that lead from `base` to `world`
     World world;
+    Script script{};  ///< what the host does to the world by itself, from its tick on
 };
 
 /// For the journal, in this order: the entries in one batch, then the snapshot.
@@ -105,6 +107,7 @@ class Session {
     std::uint32_t m_epoch;
     Limits m_limits;
     World m_world;
+    Script m_script;
     Seats m_seats;
     CommandQueue m_queue;
     FrameRing m_frames;

@@ -46,17 +46,29 @@ Accuracy::Accuracy(const World& start)
             .energy;
 }
 
-void Accuracy::watch(std::uint64_t tick, std::span<const BodyMotion> motions, bool touching) {
+void Accuracy::watch(std::uint64_t tick, std::span<const Command> commands,
+                     std::span<const BodyMotion> motions, bool touching) {
+    m_definitions.apply(commands);
+    if (m_definitions.changed()) {
+        // Closed forms know the bodies of the start alone.
+        m_pendulum.reset();
+        m_ballistic.reset();
+    }
     if (m_pendulum) m_pendulum->watch(motions);
     if (m_ballistic) m_ballistic->watch(motions, touching);
     if (tick % m_every == 0) take(motions);
 }
 
 void Accuracy::take(std::span<const BodyMotion> motions) {
-    const World& d = m_definitions;
+    const Definitions& d = m_definitions;
     const Measures now = measure(d.info(), d.bodies(), d.shapes(), d.joints(), motions);
-    m_result.energyDrift = (now.energy - m_startEnergy) / m_scale;
-    m_result.energyInjection = std::max(m_result.energyInjection, m_result.energyDrift);
+    if (d.changed()) {
+        m_result.energyDrift = m_result.energyInjection = std::nullopt;
+    } else {
+        m_result.energyDrift = (now.energy - m_startEnergy) / m_scale;
+        m_result.energyInjection =
+            std::max(m_result.energyInjection.value_or(0.0), *m_result.energyDrift);
+    }
     m_result.maxPenetration = std::max(m_result.maxPenetration, now.maxPenetration);
     m_result.meanPenetration = now.meanPenetration;
     m_result.maxJointError = std::max(m_result.maxJointError, now.maxJointError);
@@ -70,8 +82,11 @@ AccuracyResult Accuracy::finish(std::span<const BodyMotion> last) {
 }
 
 Json asJson(const AccuracyResult& r) {
-    Json json = {{"energy_drift", r.energyDrift},
-                 {"energy_injection", r.energyInjection},
+    const auto orNull = [](const std::optional<double>& value) {
+        return value ? Json(*value) : Json();
+    };
+    Json json = {{"energy_drift", orNull(r.energyDrift)},
+                 {"energy_injection", orNull(r.energyInjection)},
                  {"max_penetration_m", r.maxPenetration},
                  {"mean_penetration_m", r.meanPenetration},
                  {"max_joint_error_m", r.maxJointError}};
@@ -86,8 +101,11 @@ Json asJson(const AccuracyResult& r) {
 }
 
 void print(const AccuracyResult& r) {
-    std::printf("energy       drift %s, injection %s (of weight times extent)\n",
-                number(r.energyDrift).c_str(), number(r.energyInjection).c_str());
+    if (r.energyDrift && r.energyInjection)
+        std::printf("energy       drift %s, injection %s (of weight times extent)\n",
+                    number(*r.energyDrift).c_str(), number(*r.energyInjection).c_str());
+    else
+        std::printf("energy       - (bodies came or went)\n");
     std::printf("penetration  max %s m, mean at the end %s m\n", number(r.maxPenetration).c_str(),
                 number(r.meanPenetration).c_str());
     std::printf("joint error  max %s m\n", number(r.maxJointError).c_str());

@@ -12,14 +12,17 @@
 #include "core/scene/measure.h"
 #include "core/world/world.h"
 #include "tools/ballistic.h"
+#include "tools/definitions.h"
 #include "tools/pendulum.h"
 #include "tools/text.h"
 
 namespace huestep::tools {
 
 struct AccuracyResult {
-    double energyDrift = 0.0;      ///< (E − E₀) / E_scale at the end
-    double energyInjection = 0.0;  ///< largest (E − E₀) / E_scale, ≥ 0
+    /// (E − E₀) / E_scale at the end, and the largest of the run, ≥ 0; none where bodies came or
+    /// went, for what they brought and took is no drift.
+    std::optional<double> energyDrift;
+    std::optional<double> energyInjection;
     double maxPenetration = 0.0;   ///< m, peak
     double meanPenetration = 0.0;  ///< m, over the overlapping pairs at the end
     double maxJointError = 0.0;    ///< m, peak
@@ -31,13 +34,14 @@ struct AccuracyResult {
 /// around all centres at the start, plus the kinetic energy then.
 class Accuracy {
  public:
-    /// `start`: the world of the scene before its first step. A copy gives the definitions that
-    /// motions are judged by: a run with commands that spawn or remove is not for this class.
+    /// `start`: the world of the scene before its first step, whose definitions, and those of what
+    /// comes later, are what motions are judged by.
     explicit Accuracy(const World& start);
 
-    /// After step number `tick`, counted from 1. The narrow phase in double is run on every tick
-    /// of a small scene and on every 30th of a large one.
-    void watch(std::uint64_t tick, std::span<const BodyMotion> motions, bool touching);
+    /// After step number `tick`, counted from 1, with these commands. The narrow phase in double is
+    /// run on every tick of a small scene and on every 30th of a large one.
+    void watch(std::uint64_t tick, std::span<const Command> commands,
+               std::span<const BodyMotion> motions, bool touching);
 
     /// `last`: what the last `watch` saw.
     AccuracyResult finish(std::span<const BodyMotion> last);
@@ -45,7 +49,7 @@ class Accuracy {
  private:
     void take(std::span<const BodyMotion> motions);
 
-    World m_definitions;
+    Definitions m_definitions;
     std::uint64_t m_every;       ///< ticks between narrow phases in double
     double m_scale = 1.0;        ///< J
     double m_startEnergy = 0.0;  ///< J

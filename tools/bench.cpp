@@ -67,12 +67,14 @@ Status measureErrors(const NamedScene& scene, BenchResult& row, Progress& progre
     if (!engine) return engine.error();
     Accuracy accuracy(*start);
     for (std::uint64_t tick = 1; tick <= row.ticks && !interrupted(); ++tick) {
-        (*engine)->step();
-        accuracy.watch(tick, (*engine)->motions(), (*engine)->contactCount() > 0);
+        const std::vector<Command> commands = scene.script.commands(tick - 1);
+        if (const Status stepped = (*engine)->step(commands); !stepped) return stepped;
+        accuracy.watch(tick, commands, (*engine)->motions(), (*engine)->contactCount() > 0);
         progress.advance();
     }
     row.errors = accuracy.finish((*engine)->motions());
     row.hash = (*engine)->hash();
+    for (std::string& note : (*engine)->notes()) row.notes.push_back(std::move(note));
     return Done{};
 }
 
@@ -82,8 +84,9 @@ Status measureTime(const NamedScene& scene, BenchResult& row, Progress& progress
     row.leastByTick.resize(row.ticks, ~std::uint64_t{0});
     std::uint64_t sum = 0;
     for (std::uint64_t tick = 0; tick < row.ticks && !interrupted(); ++tick) {
+        const std::vector<Command> commands = scene.script.commands(tick);
         const std::uint64_t begin = nanoseconds();
-        (*engine)->step();
+        if (const Status stepped = (*engine)->step(commands); !stepped) return stepped;
         const std::uint64_t time = nanoseconds() - begin;
         sum += time;
         row.leastByTick[tick] = std::min(row.leastByTick[tick], time);
@@ -178,7 +181,8 @@ void addBench(Menu& menu) {
                 "tick; min to\n"
                 "q3 are those of the repeats' means. ratio: psm over that of huestep with as many "
                 "threads.\n"
-                "drift: energy won or lost by the end, as a share of weight times extent.");
+                "drift: energy won or lost by the end, as a share of weight times extent;\n"
+                "- where bodies came or went.");
     sub->add_option("SCENE", o->scenes, "Scenes (default: the benchmark scenes)");
     sub->add_option("--threads", o->threads, "Thread counts (default: 1,2)");
     std::string names;

@@ -75,8 +75,8 @@ void printBench(const std::vector<BenchResult>& results) {
                    fixed(r.psm(), 4), fixed(quantile(r.repeats, 0.0), 4),
                    fixed(quantile(r.repeats, 0.25), 4), fixed(quantile(r.repeats, 0.5), 4),
                    fixed(quantile(r.repeats, 0.75), 4), ratioOf(r, results),
-                   power(r.errors.energyDrift), power(r.errors.maxPenetration),
-                   power(r.errors.maxJointError),
+                   r.errors.energyDrift ? power(*r.errors.energyDrift) : "-",
+                   power(r.errors.maxPenetration), power(r.errors.maxJointError),
                    hex(r.hash) + (r.sameHash ? "" : " (not in every repeat)")});
     table.print();
     for (const BenchResult& r : results)

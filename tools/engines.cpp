@@ -14,8 +14,18 @@ HuestepEngine::HuestepEngine(World world, const EngineSetup& setup)
       m_executor(std::make_unique<Executor>(setup.threads, 0, setup.clock)),
       m_resources{m_executor.get(), setup.simd, setup.clock} {}
 
-void HuestepEngine::step() {
-    m_world.step({}, m_resources);
+Status HuestepEngine::step(std::span<const Command> commands) {
+    for (const CommandOutcome& outcome : m_world.step(commands, m_resources).commands)
+        if (outcome.reason != Rejection::None) ++m_rejected[outcome.reason];
+    return Done{};
+}
+
+std::vector<std::string> HuestepEngine::notes() const {
+    std::vector<std::string> sentences;
+    for (const auto& [reason, count] : m_rejected)
+        sentences.push_back("commands rejected: " + std::to_string(count) + ", as " +
+                            std::string(describe(reason)));
+    return sentences;
 }
 
 std::vector<BodyMotion> HuestepEngine::motions() const {

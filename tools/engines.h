@@ -1,6 +1,7 @@
 /// Huestep and its peers behind one face, by the names that `--engine` takes.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,11 +43,13 @@ class HuestepEngine final : public Engine {
  public:
     HuestepEngine(World world, const EngineSetup& setup);
 
-    void step() override;
+    /// Never fails.
+    Status step(std::span<const Command> commands) override;
     [[nodiscard]] std::vector<BodyMotion> motions() const override;
     [[nodiscard]] std::uint64_t hash() const override { return m_world.motionRoot(); }
     [[nodiscard]] std::uint32_t contactCount() const override { return m_world.report().contacts; }
     [[nodiscard]] std::string_view name() const override { return "huestep"; }
+    [[nodiscard]] std::vector<std::string> notes() const override;
 
     [[nodiscard]] const World& world() const { return m_world; }
     [[nodiscard]] const Executor& executor() const { return *m_executor; }
@@ -55,6 +58,7 @@ class HuestepEngine final : public Engine {
     World m_world;
     std::unique_ptr<Executor> m_executor;
     StepResources m_resources;
+    std::map<Rejection, std::uint64_t> m_rejected;  ///< commands, by why
 };
 
 }  // namespace huestep::tools

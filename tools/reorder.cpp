@@ -162,6 +162,10 @@ WorldLimits widened(WorldLimits limits, std::uint32_t noise) {
     return limits;
 }
 
+Counters countersOf(const World& world) {
+    return {world.info().nextBody, world.info().nextShape, world.info().nextJoint};
+}
+
 }  // namespace
 
 Scene shuffled(const Scene& given, std::uint64_t seed) {
@@ -180,6 +184,22 @@ Scene shuffled(const Scene& given, std::uint64_t seed) {
         out.joints[joints[from]] = joint;
     }
     return out;
+}
+
+Command NoiseIds::renamed(Command command) const {
+    const auto body = [this](BodyId& id) {
+        id = id < from.nextBody ? 2 * id : id - from.nextBody + to.nextBody;
+    };
+    const auto joint = [this](JointId& id) {
+        id = id < from.nextJoint ? 2 * id : id - from.nextJoint + to.nextJoint;
+    };
+    std::visit(
+        [&](auto& action) {
+            if constexpr (requires { action.body; }) body(action.body);
+            if constexpr (requires { action.joint; }) joint(action.joint);
+        },
+        command.action);
+    return command;
 }
 
 Result<NoisePair> withNoise(const Scene& scene) {
@@ -220,8 +240,10 @@ Result<NoisePair> withNoise(const Scene& scene) {
 
     const Result<World> world = World::create(noisy);
     if (!world) return world.error();
-    pair.quiet.counters = {world->info().nextBody, world->info().nextShape,
-                           world->info().nextJoint};
+    const Result<World> alone = World::create(scene);
+    if (!alone) return alone.error();
+    pair.quiet.counters = countersOf(*world);
+    pair.ids = {countersOf(*alone), pair.quiet.counters};
     return pair;
 }
 

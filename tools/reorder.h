@@ -15,6 +15,15 @@ namespace huestep::tools {
 /// one drawn from the seed. A world of it must equal a world of the scene from tick 0.
 Scene shuffled(const Scene& scene, std::uint64_t seed);
 
+/// Which ids the scene's bodies and joints have in its worlds with and without noise.
+struct NoiseIds {
+    Counters from;  ///< where those of a world of the scene itself begin to count
+    Counters to;    ///< and those of the worlds with and without noise
+
+    /// A command to a world of the scene, with the ids that it must name in the others.
+    [[nodiscard]] Command renamed(Command command) const;
+};
+
 /// A scene with and without noise: bodies far from all others, with contacts and joints of their
 /// own, whose ids lie between and above the scene's.
 struct NoisePair {
@@ -25,6 +34,7 @@ struct NoisePair {
     /// the same state: in the quiet one they name bodies that do not exist and are rejected, and
     /// the sequence of a rejected command counts as that of an applied one does.
     std::vector<Command> removal;
+    NoiseIds ids;
 };
 
 /// Requires a checked scene. Fails if its ids are too high to be doubled, or if the world has no

@@ -45,17 +45,19 @@ Status checkOptions(const Options& o) {
 }
 
 /// Takes the ticks, each timed; what looks at the motions between them is not.
-void stepAll(Engine& engine, const Options& options, Accuracy& accuracy, RunReport& report) {
+Status stepAll(Engine& engine, const Script& script, const Options& options, Accuracy& accuracy,
+               RunReport& report) {
     const auto* huestep = dynamic_cast<const HuestepEngine*>(&engine);
     Progress progress("stepping", report.ticksAsked);
     std::vector<BodyMotion> motions = engine.motions();
     while (report.ticks < report.ticksAsked && !interrupted()) {
+        const std::vector<Command> commands = script.commands(report.ticks);
         const std::uint64_t begin = nanoseconds();
-        engine.step();
+        if (const Status stepped = engine.step(commands); !stepped) return stepped;
         report.tickNanoseconds.add(nanoseconds() - begin);
         ++report.ticks;
         motions = engine.motions();
-        accuracy.watch(report.ticks, motions, engine.contactCount() > 0);
+        accuracy.watch(report.ticks, commands, motions, engine.contactCount() > 0);
         if (huestep != nullptr) report.add(huestep->world().report());
         if (options.hashEvery != 0 && report.ticks % options.hashEvery == 0) {
             const RunReport::TickHash hash{report.ticks, engine.hash(),
@@ -69,6 +71,7 @@ void stepAll(Engine& engine, const Options& options, Accuracy& accuracy, RunRepo
         progress.advance();
     }
     report.accuracy = accuracy.finish(motions);
+    return Done{};
 }
 
 Status checkHashes(std::uint64_t every, std::uint64_t ticks, bool json) {
@@ -79,6 +82,10 @@ Status checkHashes(std::uint64_t every, std::uint64_t ticks, bool json) {
         return Error{"--hash-every: one JSON document takes " + std::to_string(maxJsonHashes) +
                      " hashes at most; without --json they are printed as they come"};
     return Done{};
+}
+
+void showNotes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
 }
 
 Answer run(const Options& options) {
@@ -101,7 +108,7 @@ Answer run(const Options& options) {
     Result<std::unique_ptr<Engine>> engine =
         makeEngine(options.engine, scene, {options.threads, *simd, {}, nanoseconds}, &notes);
     if (!engine) return engine.error();
-    for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+    showNotes(notes);
 
     RunReport report;
     report.scene = options.scene;
@@ -110,8 +117,10 @@ Answer run(const Options& options) {
     report.simd = std::string(nameOf(*simd));
     report.ticksAsked = ticks;
     Accuracy accuracy(*start);
-    stepAll(**engine, options, accuracy, report);
+    if (const Status done = stepAll(**engine, named->script, options, accuracy, report); !done)
+        return Error{options.scene + ": " + done.error().message};
     report.close(**engine);
+    showNotes((*engine)->notes());
 
     if (options.json)
         print(report.asJson());

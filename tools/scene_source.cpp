@@ -17,7 +17,9 @@ Result<NamedScene> loadScene(const std::string& text) {
     if (const CatalogEntry* entry = findInCatalog(text)) {
         Result<Scene> scene = sceneFromCatalog(text);
         if (!scene) return scene.error();
-        return NamedScene{text, std::move(scene).value(), entry->ticks};
+        Result<Script> script = scriptFromCatalog(text);
+        if (!script) return script.error();
+        return NamedScene{text, std::move(scene).value(), entry->ticks, std::move(script).value()};
     }
     std::error_code wrong;
     if (!std::filesystem::exists(text, wrong)) {
@@ -31,7 +33,7 @@ Result<NamedScene> loadScene(const std::string& text) {
     Result<Scene> scene = protocol::readScene(*bytes);
     if (!scene) return Error{text + ": " + scene.error().message};
     if (const Status fine = check(*scene); !fine) return Error{text + ": " + fine.error().message};
-    return NamedScene{text, std::move(scene).value(), fileTicks};
+    return NamedScene{text, std::move(scene).value(), fileTicks, {}};
 }
 
 }  // namespace huestep::tools

@@ -6,6 +6,7 @@
 
 #include "core/result.h"
 #include "core/scene/scene.h"
+#include "core/scene/script.h"
 
 namespace huestep::tools {
 
@@ -13,6 +14,7 @@ struct NamedScene {
     std::string name;         ///< as given
     Scene scene;              ///< checked
     std::uint32_t ticks = 0;  ///< how long it is run unless said
+    Script script;            ///< what its host does; a file's host does nothing
 };
 
 /// From `name`, `name:parameter=value,…` or the path of a scene file.

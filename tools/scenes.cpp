@@ -26,6 +26,7 @@ Json asJson(const CatalogEntry& entry) {
             {"purpose", entry.purpose},
             {"bodies", bodiesOf(entry)},
             {"ticks", entry.ticks},
+            {"scripted", entry.script != nullptr},
             {"parameters", parameters}};
 }
 
@@ -36,17 +37,19 @@ Answer showScenes(bool json) {
         print(Json{{"scenes", scenes}});
         return Exit::Done;
     }
-    Table table({"scene", "bodies", "ticks", "purpose"});
+    Table table({"scene", "bodies", "ticks", "host", "purpose"});
     Table parameters({"scene", "parameter", "standard", "from", "to", "meaning"});
     for (const CatalogEntry& entry : sceneCatalog()) {
         table.add({std::string(entry.name), std::to_string(bodiesOf(entry)),
-                   std::to_string(entry.ticks), std::string(entry.purpose)});
+                   std::to_string(entry.ticks), entry.script != nullptr ? "scripted" : "",
+                   std::string(entry.purpose)});
         for (const SceneParameter& p : entry.parameters)
             parameters.add({std::string(entry.name), std::string(p.name), number(p.standard),
                             number(p.low), number(p.high), std::string(p.meaning)});
     }
     table.print();
-    std::printf("\n");
+    std::printf(
+        "scripted: the host moves, spawns and removes bodies as a function of the tick\n\n");
     parameters.print();
     return Exit::Done;
 }

@@ -20,7 +20,8 @@ Result<server::SessionSpec> parseSession(const std::string& text) {
         return Error{"--session: '" + text + "' is not NAME=SCENE, as in play=sandbox"};
     Result<NamedScene> scene = loadScene(text.substr(equals + 1));
     if (!scene) return Error{"--session " + text + ": " + scene.error().message};
-    return server::SessionSpec{text.substr(0, equals), std::move(scene->scene)};
+    return server::SessionSpec{text.substr(0, equals), std::move(scene->scene),
+                               std::move(scene->script)};
 }
 
 Result<server::HostConfig> configOf(const ServeOptions& options) {

@@ -11,6 +11,14 @@ std::string Way::sentence() const {
     return text;
 }
 
+std::vector<Command> Story::commandsAt(std::uint64_t tick) const {
+    std::vector<Command> all;
+    if (script) all = script(tick);
+    const auto found = commands.find(tick);
+    if (found != commands.end()) all.insert(all.end(), found->second.begin(), found->second.end());
+    return all;
+}
+
 Playback::Playback(const Story& story, const Way& way, Clock clock)
     : m_story(&story),
       m_way(way),
@@ -27,12 +35,8 @@ bool Playback::dropsNow() {
 }
 
 Status Playback::step() {
-    const auto commands = m_story->commands.find(m_world.tick());
     if (dropsNow()) m_world.dropAccelerators();
-    if (commands != m_story->commands.end())
-        m_world.step(commands->second, m_resources);
-    else
-        m_world.step({}, m_resources);
+    m_world.step(m_story->commandsAt(m_world.tick()), m_resources);
     if (m_way.restoreEvery == 0) return Done{};
     if ((m_world.tick() - m_story->start->tick()) % m_way.restoreEvery != 0) return Done{};
     Result<World> copy = World::restore(m_world.save());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,12 +21,16 @@ struct Story {
     std::shared_ptr<const World> start;
     std::uint64_t end = 0;  ///< tick of the world after the last step
     std::map<std::uint64_t, std::vector<Command>> commands;  ///< by the tick they lead from
+    /// What a scene's host does besides, in the step that leads from a tick; none: nothing.
+    std::function<std::vector<Command>(std::uint64_t tick)> script;
     /// Place of the story, in the list it stands in, whose full roots it must have …
     std::size_t reference = 0;
     std::uint64_t comparedFrom = 0;  ///< … in this tick of the world and after
     std::map<std::uint64_t, std::uint64_t> motionRoots;  ///< recorded, by tick of the world
     std::map<std::uint64_t, std::uint64_t> fullRoots;    ///< recorded, by tick of the world
 
+    /// All that is done in the step that leads from a tick.
+    [[nodiscard]] std::vector<Command> commandsAt(std::uint64_t tick) const;
     [[nodiscard]] std::uint64_t steps() const { return end - start->tick(); }
 };
 

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <thread>
 
@@ -31,6 +32,8 @@ namespace {
 constexpr std::uint64_t shuffleSeeds[] = {1, 2};
 constexpr std::uint64_t maxTicks = 10'000'000;  // the reference's hash of every tick is kept
 constexpr std::uint64_t noiseTicks = 60;  // how long noise lives, in a run that is long enough
+
+using CommandsOf = std::function<std::vector<Command>(std::uint64_t tick)>;
 
 struct Plan {
     std::vector<Story> stories;
@@ -49,31 +52,52 @@ Result<Story> storyOf(const std::string& name, const Scene& scene, std::uint64_t
 
 /// Adds a story that must equal the story at place `reference` from tick `from` on.
 Status addStory(Plan& plan, const std::string& name, const Scene& scene, std::uint64_t ticks,
-                std::size_t reference, std::uint64_t from,
+                std::size_t reference, std::uint64_t from, CommandsOf script,
                 std::map<std::uint64_t, std::vector<Command>> commands = {}) {
     Result<Story> story = storyOf(name, scene, ticks);
     if (!story) return story.error();
     story->reference = reference;
     story->comparedFrom = from;
+    story->script = std::move(script);
     story->commands = std::move(commands);
     plan.stories.push_back(std::move(story).value());
     return Done{};
 }
 
-Status addReordered(Plan& plan, const Scene& scene, std::uint64_t ticks) {
+/// The script as a function; none if the scene has none.
+CommandsOf hostOf(const Script& script) {
+    if (!script) return {};
+    return [script](std::uint64_t tick) { return script.commands(tick); };
+}
+
+/// The same host in worlds with and without noise, where the scene's ids are other ones.
+CommandsOf hostOf(const Script& script, const NoisePair& noise) {
+    if (!script) return {};
+    return [script, ids = noise.ids](std::uint64_t tick) {
+        std::vector<Command> commands = script.commands(tick);
+        for (Command& command : commands) command = ids.renamed(std::move(command));
+        return commands;
+    };
+}
+
+Status addReordered(Plan& plan, const Scene& scene, const Script& script, std::uint64_t ticks) {
     for (const std::uint64_t seed : shuffleSeeds) {
         const std::string name = "listed in order " + std::to_string(seed);
-        const Status added = addStory(plan, name, shuffled(scene, seed), ticks, 0, 0);
+        const Status added =
+            addStory(plan, name, shuffled(scene, seed), ticks, 0, 0, hostOf(script));
         if (!added) return added;
     }
-    const Result<NoisePair> noise = withNoise(scene);
+    Result<NoisePair> noise = withNoise(scene);
     if (!noise) return noise.error();
     const std::uint64_t removal = std::min(noiseTicks, ticks / 2);
+    for (std::size_t i = 0; i < noise->removal.size(); ++i)
+        noise->removal[i].sequence = hostSequence(removal, caps::maxCommands + i);
+    const CommandsOf host = hostOf(script, *noise);
     const std::size_t reference = plan.stories.size();
     const Status added = addStory(plan, "without the noise", noise->quiet, ticks, reference, 0,
-                                  {{removal, noise->removal}});
+                                  host, {{removal, noise->removal}});
     if (!added) return added;
-    return addStory(plan, "after noise", noise->noisy, ticks, reference, removal + 1,
+    return addStory(plan, "after noise", noise->noisy, ticks, reference, removal + 1, host,
                     {{removal, noise->removal}});
 }
 
@@ -98,10 +122,10 @@ void combine(Plan& plan, const std::vector<int>& threads, const std::vector<Simd
 Result<Plan> planScene(const VerifyOptions& options, const NamedScene& named) {
     Plan plan;
     const std::uint64_t ticks = options.ticks != 0 ? options.ticks : named.ticks;
-    const Status added = addStory(plan, "as given", named.scene, ticks, 0, 0);
+    const Status added = addStory(plan, "as given", named.scene, ticks, 0, 0, hostOf(named.script));
     if (!added) return Error{named.name + ": " + added.error().message};
     if (options.reorder) {
-        const Status more = addReordered(plan, named.scene, ticks);
+        const Status more = addReordered(plan, named.scene, named.script, ticks);
         if (!more) return more.error();
     }
     return plan;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tools/definitions.h"
 #include "tools/engines.h"
 #include "tools/interrupt.h"
 #include "tools/progress.h"
@@ -29,7 +30,7 @@ struct PeerRun {
 
 /// The first body, by place, whose motion differs, and its first different field.
 std::string nameMotion(const std::vector<BodyMotion>& left, const std::vector<BodyMotion>& right,
-                       const World& ids) {
+                       std::span<const BodyInfo> bodies) {
     for (std::size_t i = 0; i < left.size() && i < right.size(); ++i) {
         const auto* a = reinterpret_cast<const std::byte*>(&left[i]);
         const auto* b = reinterpret_cast<const std::byte*>(&right[i]);
@@ -48,7 +49,7 @@ std::string nameMotion(const std::vector<BodyMotion>& left, const std::vector<Bo
                               static_cast<double>(y));
                 values = text;
             }
-            return "body " + std::to_string(ids.bodies()[i].id) + " " + field.name + values;
+            return "body " + std::to_string(bodies[i].id) + " " + field.name + values;
         }
     }
     return "the number of bodies";
@@ -61,17 +62,23 @@ Status compareRun(const VerifyOptions& options, const NamedScene& named, std::ui
     if (!left) return left.error();
     auto right = makeEngine(options.engine, named.scene, {1, Simd::Auto, run.order, nullptr});
     if (!right) return right.error();
+    Definitions definitions(ids);
     for (std::uint64_t tick = 1; tick <= ticks && !interrupted(); ++tick) {
-        (*left)->step();
-        (*right)->step();
+        const std::vector<Command> commands = named.script.commands(tick - 1);
+        definitions.apply(commands);
+        if (const Status stepped = (*left)->step(commands); !stepped) return stepped;
+        if (const Status stepped = (*right)->step(commands); !stepped) return stepped;
         progress.advance();
         ++run.compared;
         run.hash = (*right)->hash();
         if (run.hash == (*left)->hash()) continue;
         run.differsAt = tick;
-        run.difference = nameMotion((*left)->motions(), (*right)->motions(), ids);
+        run.difference = nameMotion((*left)->motions(), (*right)->motions(), definitions.bodies());
         break;
     }
+    for (std::string& note : (*left)->notes())
+        if (std::find(notes.begin(), notes.end(), note) == notes.end())
+            notes.push_back(std::move(note));
     run.ended = !run.differsAt && run.compared == ticks;
     return Done{};
 }

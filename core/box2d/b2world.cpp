@@ -103,12 +103,14 @@ class InertiaSum {
 /// Builds one `b2World`; every `bool` member says whether it succeeded, `m_error` why not.
 class Builder {
  public:
-    Builder(const Scene& scene, const BuildOrder& order)
-        : m_scene(scene), m_order(order), m_random(order.shuffleSeed) {}
+    Builder(const Scene& scene, const BuildOrder& order, Notes& notes)
+        : m_scene(scene), m_order(order), m_random(order.shuffleSeed), m_notes(notes) {}
 
     Result<B2World> build();
+    Result<B2Spawned> spawn(b2World& world);
 
  private:
+    bool addAll();
     bool addBody(std::size_t place);
     bool addShape(const ShapeDef& shape, const std::string& path, b2Body& body, bool& exact);
     bool addPolygon(const ShapeDef& shape, const std::string& path, b2Body& body, bool& exact);
@@ -138,34 +140,49 @@ class Builder {
     const Scene& m_scene;
     BuildOrder m_order;
     Shuffler m_random;
-    Notes m_notes;
+    Notes& m_notes;
+    b2World* m_world = nullptr;
     std::string m_error;
-    std::vector<b2Body*> m_bodies;  ///< place i: body i in the scene's order
-    b2Body* m_ground = nullptr;     ///< what mouse joints hold on to; only made for them
-    B2World m_result;
+    std::vector<b2Body*> m_bodies;   ///< place i: body i in the scene's order
+    std::vector<b2Joint*> m_joints;  ///< place i: joint i in the scene's order
+    b2Body* m_ground = nullptr;      ///< what mouse joints hold on to; only made for them
 };
 
-Result<B2World> Builder::build() {
-    m_result.world = std::make_unique<b2World>(toB2(m_scene.gravity));
-    m_result.world->SetAllowSleeping(m_scene.sleep);
-    if (m_order.noise) makeNoise();
+bool Builder::addAll() {
     m_bodies.assign(m_scene.bodies.size(), nullptr);
-    m_result.joints.assign(m_scene.joints.size(), nullptr);
+    m_joints.assign(m_scene.joints.size(), nullptr);
     const bool shuffled = m_order.shuffleSeed != 0;
     for (const std::size_t place : m_random.order(m_scene.bodies.size(), shuffled)) {
-        if (!addBody(place)) return Error{m_error};
+        if (!addBody(place)) return false;
     }
     for (const std::size_t place : m_random.order(m_scene.joints.size(), shuffled)) {
         addJoint(place);
     }
+    return true;
+}
+
+Result<B2World> Builder::build() {
+    B2World result;
+    result.world = std::make_unique<b2World>(toB2(m_scene.gravity));
+    m_world = result.world.get();
+    m_world->SetAllowSleeping(m_scene.sleep);
+    if (m_order.noise) makeNoise();
+    if (!addAll()) return Error{m_error};
     const std::vector<BodyId> ids = bodyIdsOf(m_scene);
     std::vector<std::size_t> byId(ids.size());
     std::iota(byId.begin(), byId.end(), std::size_t{0});
     std::sort(byId.begin(), byId.end(),
               [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
-    for (const std::size_t place : byId) m_result.bodies.push_back(m_bodies[place]);
-    m_result.notes = m_notes.sentences();
-    return std::move(m_result);
+    for (const std::size_t place : byId) result.bodies.push_back(m_bodies[place]);
+    result.joints = std::move(m_joints);
+    result.notes = m_notes.sentences();
+    return result;
+}
+
+Result<B2Spawned> Builder::spawn(b2World& world) {
+    m_world = &world;
+    if (!addAll()) return Error{"spawned " + m_error};
+    return B2Spawned{std::move(m_bodies), std::move(m_joints)};
 }
 
 bool Builder::addBody(std::size_t place) {
@@ -182,7 +199,7 @@ bool Builder::addBody(std::size_t place) {
     def.allowSleep = body.maySleep;
     def.awake = !body.asleep;
     def.fixedRotation = body.fixedRotation;
-    b2Body* created = m_result.world->CreateBody(&def);
+    b2Body* created = m_world->CreateBody(&def);
     bool exact = true;
     for (std::size_t i = 0; i < body.shapes.size(); ++i) {
         const std::string path = pathOf("bodies", place) + "." + pathOf("shapes", i);
@@ -311,7 +328,7 @@ bool Builder::addFixture(const ShapeDef& shape, const b2Shape& b2shape, const st
 void Builder::addJoint(std::size_t place) {
     const JointDef& joint = m_scene.joints[place];
     const std::string path = pathOf("joints", place);
-    b2Joint*& created = m_result.joints[place];
+    b2Joint*& created = m_joints[place];
     switch (joint.kind) {
         case JointKind::Revolute:
             created = addRevolute(joint, path);
@@ -361,7 +378,7 @@ b2Joint* Builder::addRevolute(const JointDef& joint, const std::string& path) {
     def.enableMotor = joint.motor.enabled;
     def.motorSpeed = joint.motor.speed;
     def.maxMotorTorque = joint.motor.maxEffort;
-    return m_result.world->CreateJoint(&def);
+    return m_world->CreateJoint(&def);
 }
 
 b2Joint* Builder::addDistance(const JointDef& joint, const std::string& path) {
@@ -380,7 +397,7 @@ b2Joint* Builder::addDistance(const JointDef& joint, const std::string& path) {
         def.minLength = joint.limit.lower;
         def.maxLength = joint.limit.upper;
     }
-    return m_result.world->CreateJoint(&def);
+    return m_world->CreateJoint(&def);
 }
 
 b2Joint* Builder::addWeld(const JointDef& joint) {
@@ -390,7 +407,7 @@ b2Joint* Builder::addWeld(const JointDef& joint) {
         b2AngularStiffness(def.stiffness, def.damping, joint.spring.hertz,
                            joint.spring.dampingRatio, def.bodyA, def.bodyB);
     }
-    return m_result.world->CreateJoint(&def);
+    return m_world->CreateJoint(&def);
 }
 
 b2Joint* Builder::addPrismatic(const JointDef& joint, const std::string& path) {
@@ -407,13 +424,13 @@ b2Joint* Builder::addPrismatic(const JointDef& joint, const std::string& path) {
     def.enableMotor = joint.motor.enabled;
     def.motorSpeed = joint.motor.speed;
     def.maxMotorForce = joint.motor.maxEffort;
-    return m_result.world->CreateJoint(&def);
+    return m_world->CreateJoint(&def);
 }
 
 b2Joint* Builder::addMouse(const JointDef& joint) {
     if (m_ground == nullptr) {
         const b2BodyDef ground;
-        m_ground = m_result.world->CreateBody(&ground);
+        m_ground = m_world->CreateBody(&ground);
     }
     b2MouseJointDef def;
     def.bodyA = m_ground;
@@ -424,7 +441,7 @@ b2Joint* Builder::addMouse(const JointDef& joint) {
     def.maxForce = joint.maxForce;
     b2LinearStiffness(def.stiffness, def.damping, joint.spring.hertz, joint.spring.dampingRatio,
                       def.bodyA, def.bodyB);
-    b2MouseJoint* created = static_cast<b2MouseJoint*>(m_result.world->CreateJoint(&def));
+    b2MouseJoint* created = static_cast<b2MouseJoint*>(m_world->CreateJoint(&def));
     if (m_scene.bodies[joint.bodyB].asleep) return created;  // a new target would wake the body
     created->SetTarget(toB2(joint.target));
     return created;
@@ -434,7 +451,7 @@ b2Joint* Builder::addMouse(const JointDef& joint) {
 /// keeps history: in the free lists of its allocator and of its dynamic tree.
 void Builder::makeNoise() {
     Shuffler random(m_order.shuffleSeed + 1);
-    b2World& world = *m_result.world;
+    b2World& world = *m_world;
     std::vector<b2Body*> bodies;
     for (std::size_t i = 0; i < 48; ++i) {
         b2BodyDef def;
@@ -458,7 +475,15 @@ void Builder::makeNoise() {
 }  // namespace
 
 Result<B2World> makeB2World(const Scene& scene, const BuildOrder& order) {
-    return Builder(scene, order).build();
+    Notes notes;
+    return Builder(scene, order, notes).build();
+}
+
+Result<B2Spawned> spawnInB2World(b2World& world, const Spawn& spawn, Notes& notes) {
+    Scene part;
+    part.bodies = spawn.bodies;
+    part.joints = spawn.joints;
+    return Builder(part, {}, notes).spawn(world);
 }
 
 }  // namespace huestep

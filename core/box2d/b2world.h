@@ -16,9 +16,11 @@
 #include <string>
 #include <vector>
 
+#include "core/box2d/notes.h"
 #include "core/result.h"
 #include "core/scene/engine.h"
 #include "core/scene/scene.h"
+#include "core/world/command.h"
 
 class b2World;
 class b2Body;
@@ -45,6 +47,15 @@ struct B2World {
 /// inertia about the origin in float first, is left with none about the centre of mass (a disc of
 /// radius r at more than about 1000 r).
 Result<B2World> makeB2World(const Scene& scene, const BuildOrder& order = {});
+
+/// What a spawn added: bodies and joints place by place.
+struct B2Spawned {
+    std::vector<b2Body*> bodies;
+    std::vector<b2Joint*> joints;
+};
+
+/// Adds what a spawn says to a world. Fails as `makeB2World` does, and leaves part of it behind.
+Result<B2Spawned> spawnInB2World(b2World& world, const Spawn& spawn, Notes& notes);
 
 /// A scene with what a `b2World` holds now, bodies and joints in the order of their creation.
 struct B2Import {

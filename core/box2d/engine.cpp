@@ -2,24 +2,50 @@
 
 #include <box2d/box2d.h>
 
+#include <algorithm>
+
 #include "core/box2d/b2world.h"
+#include "core/box2d/by_id.h"
+#include "core/box2d/notes.h"
+#include "core/math/trig.h"
 #include "core/state/hash.h"
 
 namespace huestep {
 
 namespace {
 
+b2Vec2 toB2(Vec2 v) {
+    return {v.x, v.y};
+}
+
 class Box2dEngine final : public Engine {
  public:
-    Box2dEngine(B2World world, float stepSeconds)
-        : m_world(std::move(world)), m_stepSeconds(stepSeconds) {}
+    Box2dEngine(B2World world, const Scene& scene)
+        : m_world(std::move(world)),
+          m_stepSeconds(scene.stepSeconds),
+          m_bodies(sorted(bodyIdsOf(scene)), m_world.bodies, scene.counters.nextBody),
+          m_joints(jointIdsOf(scene), m_world.joints, scene.counters.nextJoint) {
+        for (const auto& joint : m_joints.entries()) {
+            joint.handle->GetUserData().pointer = joint.id;
+        }
+    }
 
-    void step() override { m_world.world->Step(m_stepSeconds, 8, 3); }
+    Status step(std::span<const Command> commands) override {
+        for (const Command& command : commands) {
+            const Status applied =
+                std::visit([this](const auto& action) { return apply(action); }, command.action);
+            if (!applied) return applied;
+        }
+        m_bodies.tidy();
+        m_joints.tidy();
+        m_world.world->Step(m_stepSeconds, 8, 3);
+        return Done{};
+    }
 
     [[nodiscard]] std::vector<BodyMotion> motions() const override {
         std::vector<BodyMotion> result;
-        result.reserve(m_world.bodies.size());
-        for (const b2Body* body : m_world.bodies) result.push_back(motionOf(*body));
+        result.reserve(m_bodies.entries().size());
+        for (const auto& body : m_bodies.entries()) result.push_back(motionOf(*body.handle));
         return result;
     }
 
@@ -37,8 +63,98 @@ class Box2dEngine final : public Engine {
     }
 
     [[nodiscard]] std::string_view name() const override { return "box2d"; }
+    [[nodiscard]] std::vector<std::string> notes() const override { return m_notes.sentences(); }
 
  private:
+    static std::vector<BodyId> sorted(std::vector<BodyId> ids) {
+        std::sort(ids.begin(), ids.end());
+        return ids;
+    }
+
+    Status apply(const Spawn& action) {
+        const Result<B2Spawned> spawned = spawnInB2World(*m_world.world, action, m_notes);
+        if (!spawned) return spawned.error();
+        for (b2Body* body : spawned->bodies) m_bodies.add(body);
+        for (b2Joint* joint : spawned->joints) {
+            joint->GetUserData().pointer = m_joints.add(joint);
+        }
+        return Done{};
+    }
+
+    Status apply(const RemoveBody& action) {
+        const auto body = m_bodies.find(action.body);
+        if (!body) return Done{};
+        for (const b2JointEdge* e = (*body)->GetJointList(); e != nullptr; e = e->next) {
+            m_joints.remove(static_cast<JointId>(e->joint->GetUserData().pointer));
+        }
+        m_world.world->DestroyBody(*body);
+        m_bodies.remove(action.body);
+        return Done{};
+    }
+
+    Status apply(const RemoveJoint& action) {
+        const auto joint = m_joints.find(action.joint);
+        if (!joint) return Done{};
+        m_world.world->DestroyJoint(*joint);
+        m_joints.remove(action.joint);
+        return Done{};
+    }
+
+    Status apply(const SetMotor& action) {
+        const auto joint = m_joints.find(action.joint);
+        if (!joint) return Done{};
+        const auto set = [&action](auto& motorised) {
+            motorised.EnableMotor(action.enabled);
+            motorised.SetMotorSpeed(action.speed);
+        };
+        if ((*joint)->GetType() == e_revoluteJoint) {
+            set(static_cast<b2RevoluteJoint&>(**joint));
+        } else if ((*joint)->GetType() == e_prismaticJoint) {
+            set(static_cast<b2PrismaticJoint&>(**joint));
+        } else {
+            m_notes.add(pathOf("joint", action.joint), "its motor cannot be set in Box2D 2.4");
+        }
+        return Done{};
+    }
+
+    Status apply(const SetVelocity& action) {
+        const auto body = m_bodies.find(action.body);
+        if (!body) return Done{};
+        (*body)->SetLinearVelocity(toB2(action.velocity));
+        (*body)->SetAngularVelocity(action.angularVelocity);
+        return Done{};
+    }
+
+    Status apply(const SetTarget& action) {
+        const auto body = m_bodies.find(action.body);
+        if (!body) return Done{};
+        const float perSecond = 1.0f / m_stepSeconds;
+        const b2Vec2 way = toB2(action.position) - (*body)->GetPosition();
+        const Rotation turn = relative(rotationOf((*body)->GetAngle()), action.rotation);
+        (*body)->SetLinearVelocity(perSecond * way);
+        (*body)->SetAngularVelocity(perSecond * angleOf(turn));
+        return Done{};
+    }
+
+    Status apply(const ApplyImpulse& action) {
+        const auto body = m_bodies.find(action.body);
+        if (body) (*body)->ApplyLinearImpulse(toB2(action.impulse), toB2(action.point), true);
+        return Done{};
+    }
+
+    Status apply(const ApplyForce& action) {
+        const auto body = m_bodies.find(action.body);
+        if (body) (*body)->ApplyForce(toB2(action.force), toB2(action.point), true);
+        return Done{};
+    }
+
+    /// Players and their hands.
+    template <class Other>
+    Status apply(const Other&) {
+        m_notes.add("commands", "players and grabs are left out on box2d");
+        return Done{};
+    }
+
     static BodyMotion motionOf(const b2Body& body) {
         const b2Vec2 center = body.GetWorldCenter();
         const b2Rot q = body.GetTransform().q;
@@ -55,6 +171,9 @@ class Box2dEngine final : public Engine {
 
     B2World m_world;
     float m_stepSeconds;
+    ById<b2Body*> m_bodies;
+    ById<b2Joint*> m_joints;
+    Notes m_notes;
 };
 
 }  // namespace
@@ -64,8 +183,7 @@ Result<std::unique_ptr<Engine>> makeBox2dEngine(const Scene& scene, const BuildO
     Result<B2World> world = makeB2World(scene, order);
     if (!world) return world.error();
     if (notes != nullptr) *notes = world->notes;
-    return std::unique_ptr<Engine>(
-        std::make_unique<Box2dEngine>(std::move(*world), scene.stepSeconds));
+    return std::unique_ptr<Engine>(std::make_unique<Box2dEngine>(std::move(*world), scene));
 }
 
 }  // namespace huestep

@@ -188,7 +188,15 @@ const CatalogEntry* findInCatalog(std::string_view text) {
     return nullptr;
 }
 
-Result<Scene> sceneFromCatalog(std::string_view text) {
+namespace {
+
+/// An entry of the catalogue and a value for each of its parameters.
+struct Choice {
+    const CatalogEntry* entry = nullptr;
+    std::vector<double> values;
+};
+
+Result<Choice> choose(std::string_view text) {
     const CatalogEntry* entry = findInCatalog(text);
     const std::size_t colon = text.find(':');
     if (entry == nullptr) {
@@ -216,9 +224,23 @@ Result<Scene> sceneFromCatalog(std::string_view text) {
             return Error{std::string(entry->name) + ": nothing stands after the last comma"};
         }
     }
-    Scene scene = entry->build(values);
+    return Choice{entry, std::move(values)};
+}
+
+}  // namespace
+
+Result<Scene> sceneFromCatalog(std::string_view text) {
+    const Result<Choice> choice = choose(text);
+    if (!choice) return choice.error();
+    Scene scene = choice->entry->build(choice->values);
     scene.name = text;
     return scene;
+}
+
+Result<Script> scriptFromCatalog(std::string_view text) {
+    const Result<Choice> choice = choose(text);
+    if (!choice) return choice.error();
+    return Script(choice->entry->script, choice->values);
 }
 
 }  // namespace huestep

@@ -8,6 +8,7 @@
 
 #include "core/result.h"
 #include "core/scene/scene.h"
+#include "core/scene/script.h"
 
 namespace huestep {
 
@@ -27,6 +28,7 @@ struct CatalogEntry {
     std::vector<SceneParameter> parameters;
     /// Builds it; `values` holds one number a parameter, in order, within range.
     Scene (*build)(std::span<const double> values) = nullptr;
+    Script::Rule script = nullptr;  ///< what its host does, tick by tick; null: nothing
 };
 
 /// All built-in scenes, by name.
@@ -36,6 +38,10 @@ std::span<const CatalogEntry> sceneCatalog();
 /// is the text. Numbers are read as in C, without locale. The sentence of a failure names
 /// the unknown scene or parameter, or the value out of range, and what there is instead.
 Result<Scene> sceneFromCatalog(std::string_view text);
+
+/// What the host of the scene of this text does; of most scenes, nothing. Fails as
+/// `sceneFromCatalog` does.
+Result<Script> scriptFromCatalog(std::string_view text);
 
 /// The entry that `text` names, parameters aside; null if there is none.
 const CatalogEntry* findInCatalog(std::string_view text);

@@ -54,6 +54,65 @@ TEST(Session, AViewShowsAHandFromItsTargetToTheBodyItHolds) {
     EXPECT_NEAR(view.joints[0].b.y, now.y, 0.05f);
 }
 
+/// A kinematic body, and a host who moves it to x = tick and spawns a disc every tenth tick.
+Scene drivenScene() {
+    Scene scene;
+    scene.name = "driven";
+    scene.bodies.push_back({});
+    scene.bodies[0].type = BodyType::Kinematic;
+    scene.bodies[0].shapes = {ShapeDef::box(0.5f, 0.5f)};
+    return scene;
+}
+void drive(std::span<const double>, std::uint64_t tick, std::vector<Action>& actions) {
+    actions.emplace_back(SetTarget{1, {static_cast<float>(tick), 0.0f}, {}});
+    if (tick % 10 != 0) return;
+    BodyDef disc;
+    disc.type = BodyType::Dynamic;
+    disc.position = {static_cast<float>(tick), 20.0f};
+    disc.shapes = {ShapeDef::circle({}, 0.5f)};
+    actions.emplace_back(Spawn{{disc}, {}});
+    if (tick >= 30) actions.emplace_back(RemoveBody{static_cast<BodyId>(2 + tick / 10 - 3)});
+}
+
+TEST(Session, AddsTheCommandsOfItsScenesScriptToEveryFrame) {
+    SessionStart start = startOf(drivenScene());
+    World replay = start.world;
+    start.script = Script(drive, {});
+    Session session(std::move(start), Limits{}, second);
+    Instant now = second;
+    for (std::uint64_t tick = 0; tick < 65; ++tick) {
+        const ClosedTick closed = session.closeTick(now += second / 60, {});
+        session.committed(closed.commits);
+        const std::vector<Command>& commands = frameOf(closed).commands;
+        std::vector<Action> actions;
+        drive({}, tick, actions);
+        ASSERT_EQ(commands.size(), actions.size());
+        for (std::size_t i = 0; i < actions.size(); ++i) EXPECT_EQ(commands[i].action, actions[i]);
+        // Who has the journal needs no script.
+        for (const CommandOutcome& outcome : replay.step(commands).commands) {
+            EXPECT_EQ(outcome.reason, Rejection::None) << describe(outcome.reason);
+        }
+        ASSERT_EQ(replay.fullRoot(), session.world().fullRoot()) << "tick " << tick;
+    }
+    EXPECT_EQ(session.world().bodies().size(), 1u + 3u) << "seven spawned, four removed";
+    EXPECT_NEAR(session.world().motions()[0].position.x, 64.0f, 1e-3f);
+}
+
+TEST(Session, ThatIsRecoveredGoesOnWithItsScriptFromItsTick) {
+    SessionStart start = startOf(drivenScene());
+    start.script = Script(drive, {});
+    SessionStart later = startOf(drivenScene());
+    later.script = start.script;
+    Session whole(std::move(start), Limits{}, second);
+    for (int tick = 0; tick < 60; ++tick) {
+        whole.committed(whole.closeTick(second, {}).commits);
+        if (tick == 36) later.world = whole.world();
+    }
+    Session session(std::move(later), Limits{}, second);
+    while (session.tick() < whole.tick()) session.committed(session.closeTick(second, {}).commits);
+    EXPECT_EQ(session.world().fullRoot(), whole.world().fullRoot());
+}
+
 TEST(Session, AFrameHasItsCommandsInKeyOrderAndTheRootItIsAppliedTo) {
     Bench bench;
     const PlayerId one = bench.seat(), two = bench.seat();
