@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/scene/scene.h"
+#include "core/world/command.h"
 
 namespace huestep::scenes {
 
@@ -21,6 +22,12 @@ Scene tumbler(Values values);
 Scene smash(Values values);
 Scene compounds(Values values);
 Scene washer(Values values);
+Scene junkyard(Values values);
+Scene rain(Values values);
+
+// What their hosts do, as `Script::Rule`.
+void junkyardHost(Values values, std::uint64_t tick, std::vector<Action>& actions);
+void rainHost(Values values, std::uint64_t tick, std::vector<Action>& actions);
 Scene small(Values values);
 
 // Accuracy: closed forms or reference solutions are known.

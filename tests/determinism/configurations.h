@@ -84,4 +84,12 @@ inline std::vector<Command> silence(const World&) {
     return {};
 }
 
+/// What the host of a scene of the catalogue does.
+inline CommandsOf hostOf(const std::string& catalogText) {
+    const Result<Script> script = scriptFromCatalog(catalogText);
+    EXPECT_TRUE(script.ok()) << catalogText;
+    if (!script.ok()) return silence;
+    return [script = *script](const World& world) { return script.commands(world.tick()); };
+}
+
 }  // namespace huestep::test

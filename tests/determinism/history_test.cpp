@@ -128,11 +128,13 @@ TEST_P(History, OfWhatCameAndWentDoesNotReachTheRun) {
 TEST_P(History, OfSnapshotsDoesNotReachTheRun) {
     // Restored at tick k for several k, each copy ends where the run that never stopped ends.
     World reference = worldOf(GetParam());
+    const CommandsOf host = hostOf(GetParam());
     std::vector<World> copies;
     for (int tick = 0; tick < 100; ++tick) {
         if (tick % 23 == 0) copies.push_back(restored(reference));
-        reference.step({});
-        for (World& copy : copies) copy.step({});
+        const std::vector<Command> commands = host(reference);
+        reference.step(commands);
+        for (World& copy : copies) copy.step(commands);
         for (const World& copy : copies) {
             expectEqual(reference, copy, GetParam() + ", tick " + std::to_string(tick));
             if (HasFatalFailure()) return;
@@ -150,7 +152,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, History,
                                          "joint_grid:n=12", "tumbler:count=8", "washer:count=8",
                                          "smash:columns=8,rows=8", "compounds:columns=4,rows=5",
                                          "small", "hinges", "joints", "mixed", "sandbox",
-                                         "pendulum", "chain"),
+                                         "pendulum", "junkyard:columns=20,rows=4",
+                                         "rain:floors=1,columns=3,group=2,period=20", "chain"),
                          nameOfScene);
 
 }  // namespace

@@ -178,6 +178,43 @@ TEST(Catalog, WasherHas8100BoxesInsideARingOf36PiecesWithFourPaddles) {
     }
 }
 
+TEST(Catalog, JunkyardHas8000PiecesOfFiveCornersInATroughWithAPusher) {
+    const Scene scene = sceneOf("junkyard");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 8'000u);
+    ASSERT_EQ(countOf(scene, BodyType::Kinematic), 1u);
+    ASSERT_EQ(scene.bodies[0].type, BodyType::Kinematic);
+    EXPECT_EQ(scene.bodies[0].shapes[0].vertices[0], (Vec2{-2.0f, 0.0f}));
+    EXPECT_EQ(scene.bodies[0].shapes[0].vertices[2], (Vec2{2.0f, 8.0f}));
+    std::size_t ground = 0;
+    for (const BodyDef& body : scene.bodies) {
+        if (body.type == BodyType::Static) ground += body.shapes.size();
+        if (body.type != BodyType::Dynamic) continue;
+        const ShapeDef& piece = body.shapes[0];
+        ASSERT_EQ(piece.vertexCount, 5);
+        for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(length(piece.vertices[i]), 0.25f, 1e-6f);
+        EXPECT_LT(std::abs(body.position.x), 79.0f) << "between the walls";
+    }
+    EXPECT_EQ(ground, 161u + 2u * 50u);
+    EXPECT_NEAR(scene.bodies.back().position.x, 0.75f * 99.0f + 0.1f, 1e-4f);
+    EXPECT_NEAR(scene.bodies.back().position.y, 15.0f + 39.0f, 1e-4f);
+}
+
+TEST(Catalog, RainHasFiveFloorsOf501BoxesAndNobodyYet) {
+    const Scene scene = sceneOf("rain");
+    EXPECT_EQ(countOf(scene, BodyType::Dynamic), 0u);
+    std::size_t boxes = 0;
+    float highest = 0.0f;
+    for (const BodyDef& body : scene.bodies) {
+        boxes += body.shapes.size();
+        for (const ShapeDef& box : body.shapes) {
+            highest = std::max(highest, box.vertices[2].y);
+            EXPECT_LE(std::abs(box.vertices[2].x), 125.25f);
+        }
+    }
+    EXPECT_EQ(boxes, 5u * 501u);
+    EXPECT_EQ(highest, 4.0f * 45.0f + 0.25f);
+}
+
 TEST(Catalog, SmallHasThreeColumnsOf40BoxesAndADisc) {
     const Scene scene = sceneOf("small");
     EXPECT_EQ(countOf(scene, BodyType::Dynamic), 41u);
@@ -271,7 +308,8 @@ TEST(Catalog, NamesWhatIsWrongAndWhatThereIsInstead) {
     EXPECT_EQ(
         sentenceFor("pyrmaid"),
         "there is no scene 'pyrmaid'; there are ballistic, chain, compounds, double_pendulum, "
-        "hinges, joint_grid, joints, many_pyramids, mixed, pendulum, pyramid, sandbox, small, "
+        "hinges, joint_grid, joints, junkyard, many_pyramids, mixed, pendulum, pyramid, rain, "
+        "sandbox, small, "
         "smash, stack, tumbler, washer");
     EXPECT_EQ(sentenceFor("many_pyramids:bse=1"),
               "many_pyramids has no parameter 'bse'; it has rows, columns, base");
