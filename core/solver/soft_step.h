@@ -72,6 +72,12 @@ class SoftStep {
     [[nodiscard]] bool isKept(std::uint32_t lane) const {
         return m_blocks[lane / blockLanes].kept[lane % blockLanes] != 0;
     }
+    /// Places in the world of the bodies of a lane that is no padding.
+    [[nodiscard]] ConstraintPlaces bodiesOf(std::uint32_t lane) const {
+        const ContactBlock& rows = m_blocks[lane / blockLanes];
+        return {static_cast<std::uint32_t>(rows.motionA[lane % blockLanes]),
+                static_cast<std::uint32_t>(rows.motionB[lane % blockLanes])};
+    }
     void dropLane(std::uint32_t lane) { m_blocks[lane / blockLanes].kept[lane % blockLanes] = 0; }
     [[nodiscard]] ContactImpulses impulses(std::uint32_t lane) const;
     /// Writes a contact's row to its lane, whose bodies stay.

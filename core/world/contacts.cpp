@@ -152,6 +152,10 @@ void World::Data::collideAll(Simd simd, Executor* executor) {
     const auto activityOfBoth = [&](const Contact& contact) {
         return static_cast<std::uint8_t>(activity[contact.bodyA] | activity[contact.bodyB]);
     };
+    const auto activityOfLane = [&](std::uint32_t lane) {
+        const ConstraintPlaces bodies = acc.solver.bodiesOf(lane);
+        return static_cast<std::uint8_t>(activity[bodies.a] | activity[bodies.b]);
+    };
     bool disturbs = false;
     const auto collect = [&](std::vector<Findings>& findings) {
         for (Findings& f : findings) {
@@ -187,9 +191,12 @@ void World::Data::collideAll(Simd simd, Executor* executor) {
     if (acc.rowsHold) {
         const std::uint32_t blocks = acc.solver.blockCount();
         auto findings = perBlock<Findings>(blocks, blockGrain);
-        overRange(executor, blocks, blockGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        overBlocks(executor, blocks, blockGrain, [&](std::uint32_t begin, std::uint32_t end) {
             Findings& mine = findings[begin / blockGrain];
             acc.solver.check(state.motions, acc.tight, simd, {begin, end});
+            // Contacts lie anywhere: first whom to look at, so that they are on their way.
+            std::array<std::uint32_t, blockGrain * blockLanes> renewed{};
+            std::size_t renewedCount = 0;
             for (std::uint32_t block = begin; block < end; ++block) {
                 if (!anyAsleep && acc.solver.allKept(block)) {
                     mine.recycled += blockLanes;
@@ -199,22 +206,32 @@ void World::Data::collideAll(Simd simd, Executor* executor) {
                      ++lane) {
                     const std::uint32_t place = acc.plan.contactOfLane[lane];
                     if (place == none) continue;
-                    Contact& contact = acc.contacts[place];
-                    if (contact.pointCount == 0) {
-                        acc.solver.dropLane(lane);  // it ended with its pair
-                    } else if (anyAsleep && !isActive(activityOfBoth(contact))) {
+                    const std::uint8_t both =
+                        anyAsleep ? activityOfLane(lane) : std::uint8_t{movesNow};
+                    if (!isActive(both)) {
                         // It fell asleep; who wakes it looks at the contact alone.
-                        setImpulses(contact, acc.solver.impulses(lane));
+                        setImpulses(acc.contacts[place], acc.solver.impulses(lane));
                         acc.solver.dropLane(lane);
                         acc.inLanes[place] = 0;
                     } else if (acc.solver.isKept(lane)) {
-                        lookAt(place, ContactUpdate::Recycled, mine);
+                        ++mine.recycled;
+                        mine.disturbs |= isAsleep(both);
                     } else {
-                        setImpulses(contact, acc.solver.impulses(lane));
-                        mine.fresh.push_back(lane);
-                        lookAt(place, renewContact(contact, in), mine);
+                        renewed[renewedCount++] = lane;
+                        __builtin_prefetch(&acc.contacts[place]);
+                        __builtin_prefetch(&acc.contacts[place].points[0]);
+                        __builtin_prefetch(&acc.contacts[place].points[1].tangentImpulse);
                     }
                 }
+            }
+            for (std::size_t k = 0; k < renewedCount; ++k) {
+                const std::uint32_t lane = renewed[k];
+                const std::uint32_t place = acc.plan.contactOfLane[lane];
+                Contact& contact = acc.contacts[place];
+                if (contact.pointCount == 0) continue;  // it ended with its pair
+                setImpulses(contact, acc.solver.impulses(lane));
+                mine.fresh.push_back(lane);
+                lookAt(place, renewContact(contact, in), mine);
             }
         });
         collect(findings);
