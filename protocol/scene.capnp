@@ -24,6 +24,7 @@ enum ShapeKind {
   capsule @1;  # 2 vertices
   polygon @2;  # 3 to 8 vertices, convex, counter-clockwise
   segment @3;  # 2 vertices, radius 0, no mass
+  chainSegment @4;  # ghost, 2 vertices, ghost: one side of a segment and its neighbours in a chain
 }
 
 struct Shape {
@@ -73,7 +74,7 @@ struct Body {
   linearDamping @12 :Float32;         # 1/s, [0, 1000]
   angularDamping @13 :Float32;        # 1/s, [0, 1000]
   gravityScale @14 :Float32 = 1;      # within 1000 of 0
-  shapes @15 :List(Shape);            # at most 256
+  shapes @15 :List(Shape);            # at most 1024
   firstShape @16 :UInt32;             # with an id: the first id of its shapes; 0: the next ones
 }
 

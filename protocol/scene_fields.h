@@ -17,8 +17,8 @@ namespace huestep::protocol {
 template <class Enum>
 inline constexpr auto wordsOf = nullptr;
 template <>
-inline constexpr auto wordsOf<ShapeKind> = std::to_array<std::string_view>({"circle", "capsule",
-                                                                            "polygon", "segment"});
+inline constexpr auto wordsOf<ShapeKind> =
+    std::to_array<std::string_view>({"circle", "capsule", "polygon", "segment", "chainSegment"});
 template <>
 inline constexpr auto wordsOf<BodyType> = std::to_array<std::string_view>({"static", "kinematic",
                                                                            "dynamic"});

@@ -28,7 +28,9 @@ void addShapes(const World& world, std::size_t most, protocol::View& view) {
         drawn.body = *place;
         drawn.kind = shape.shapeKind();
         drawn.radius = shape.radius;
-        drawn.vertices.assign(shape.vertices.begin(), shape.vertices.begin() + shape.vertexCount());
+        const auto end = shape.vertices.begin() + shape.vertexCount();
+        const bool ghosts = shape.shapeKind() == ShapeKind::ChainSegment;  // not drawn
+        drawn.vertices.assign(shape.vertices.begin() + ghosts, end - ghosts);
         view.shapes.push_back(std::move(drawn));
     }
 }

@@ -48,6 +48,12 @@ SpringDef springOf(float stiffness, float damping, float massA, float massB) {
     return {true, omega / (2.0f * std::numbers::pi_v<float>), damping / (2.0f * mass * omega)};
 }
 
+ShapeDef fromB2(const b2EdgeShape& edge) {
+    if (!edge.m_oneSided) return ShapeDef::segment(fromB2(edge.m_vertex1), fromB2(edge.m_vertex2));
+    return ShapeDef::chainSegment(fromB2(edge.m_vertex0), fromB2(edge.m_vertex1),
+                                  fromB2(edge.m_vertex2), fromB2(edge.m_vertex3));
+}
+
 class Importer {
  public:
     Result<B2Import> import(const b2World& world, float stepSeconds);
@@ -130,15 +136,13 @@ void Importer::addShapes(const b2Fixture& fixture, BodyDef& into, const std::str
         for (int32 i = 0; i < polygon.m_count; ++i) points.push_back(fromB2(polygon.m_vertices[i]));
         shapes.push_back(ShapeDef::polygon(points));
     } else if (shape.GetType() == b2Shape::e_edge) {
-        const auto& edge = static_cast<const b2EdgeShape&>(shape);
-        if (edge.m_oneSided) m_notes.add(path, "was a one-sided edge, has two sides here");
-        shapes.push_back(ShapeDef::segment(fromB2(edge.m_vertex1), fromB2(edge.m_vertex2)));
+        shapes.push_back(fromB2(static_cast<const b2EdgeShape&>(shape)));
     } else {
         const auto& chain = static_cast<const b2ChainShape&>(shape);
-        m_notes.add(path, "was a chain, is a row of two-sided segments here");
-        for (int32 i = 0; i + 1 < chain.m_count; ++i) {
-            shapes.push_back(
-                ShapeDef::segment(fromB2(chain.m_vertices[i]), fromB2(chain.m_vertices[i + 1])));
+        for (int32 i = 0; i < chain.GetChildCount(); ++i) {
+            b2EdgeShape edge;
+            chain.GetChildEdge(&edge, i);
+            shapes.push_back(fromB2(edge));
         }
     }
     for (ShapeDef& converted : shapes) {

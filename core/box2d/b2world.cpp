@@ -246,6 +246,12 @@ bool Builder::addShape(const ShapeDef& shape, const std::string& path, b2Body& b
             edge.SetTwoSided(toB2(shape.vertices[0]), toB2(shape.vertices[1]));
             return addFixture(shape, edge, path, body);
         }
+        case ShapeKind::ChainSegment: {
+            b2EdgeShape edge;
+            edge.SetOneSided(toB2(shape.vertices[0]), toB2(shape.vertices[1]),
+                             toB2(shape.vertices[2]), toB2(shape.vertices[3]));
+            return addFixture(shape, edge, path, body);
+        }
         case ShapeKind::Capsule:
             exact = false;
             return addCapsule(shape, path, body);

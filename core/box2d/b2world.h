@@ -1,10 +1,11 @@
 /// A scene as a `b2World` of Box2D 2.4, and back.
 ///
 /// What both have is carried over exactly: bodies with damping, gravity scale and sleep, circles,
-/// polygons without radius, segments (as two-sided edges), friction, restitution, filters of 16
-/// bits; revolute and prismatic joints with limit and motor, distance joints with spring and range,
-/// welds, mouse joints.
-/// The rest is approximated or left out, and said in `notes`, one sentence for each kind of loss:
+/// polygons without radius, segments (as two-sided edges), chain segments (as one-sided edges,
+/// whose fronts are to the right there too), friction, restitution, filters of 16 bits; revolute
+/// and prismatic joints with limit and motor, distance joints with spring and range, welds, mouse
+/// joints. The rest is approximated or left out, and said in `notes`, one sentence for each kind of
+/// loss:
 ///  - a polygon's rounded corners are made sharp: its edges are moved out by the radius;
 ///  - a capsule is two circles and a box; such bodies get the mass of the exact shapes;
 ///  - rolling resistance, tangent speed, springs of revolute and prismatic joints and motors of
@@ -63,7 +64,7 @@ struct B2Import {
     std::vector<std::string> notes;  ///< as above
 };
 
-/// Chains become segments; a static body that only mouse joints hold on to is none; sensors,
+/// Chains become chain segments; a static body that only mouse joints hold on to is none; sensors,
 /// bullets' extra care and joints of other kinds are left out and noted. Masses are those of the
 /// shapes: a body whose mass was set by hand is noted. Fails with the sentence of `check` where the
 /// result is no valid scene, as for a body without mass.

@@ -63,7 +63,8 @@ std::optional<HullHit> castRayAtHull(const Hull& hull, Vec2 from, Vec2 to) {
     std::optional<HullHit> best;
     if (inside(hull, from)) return best;
     const Vec2 d = to - from;
-    for (int i = 0; i < hull.count; ++i) {
+    const int edges = hull.oneSided ? 1 : hull.count;
+    for (int i = 0; i < edges; ++i) {
         if (hull.radius > 0.0f) castAtCircle(best, hull.vertices[at(i)], hull.radius, from, d);
         if (hull.count < 2) continue;
         const Vec2 out = hull.radius * hull.normals[at(i)];

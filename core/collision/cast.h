@@ -13,7 +13,8 @@ struct HullHit {
 };
 
 /// Where the segment from `from` to `to` enters the hull, in the hull's frame. A segment that
-/// starts inside does not hit, as a ray that is cast from within a body should not meet it.
+/// starts inside does not hit, as a ray that is cast from within a body should not meet it. A chain
+/// segment is met from its front alone.
 std::optional<HullHit> castRayAtHull(const Hull& hull, Vec2 from, Vec2 to);
 
 }  // namespace huestep

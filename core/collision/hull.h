@@ -11,9 +11,14 @@ namespace huestep {
 /// Points within `radius` of the convex hull of `count` vertices (1 to 8, counter-clockwise).
 /// `normals[i]` is the outward normal of the edge from vertex i to vertex i+1; a hull of two
 /// vertices has two edges with opposite normals, a hull of one has none.
+///
+/// A chain segment is a one-sided hull of two vertices: its front is that of edge 0. Its ghosts,
+/// before and after, are vertices 2 and 3, outside of the count; normals 2 and 3 are those of the
+/// edges to them, in the direction of the chain.
 template <class Real>
 struct HullT {
     int count = 0;
+    bool oneSided = false;
     Real radius{0};
     std::array<Vec2T<Real>, maxPolygonVertices> vertices{};
     std::array<Vec2T<Real>, maxPolygonVertices> normals{};
@@ -24,7 +29,25 @@ struct HullT {
 using Hull = HullT<float>;
 
 template <class Real>
+HullT<Real> chainHullOf(const ShapeInfo& shape) {
+    constexpr std::array<std::size_t, 4> order{1, 2, 0, 3};
+    HullT<Real> hull;
+    hull.count = 2;
+    hull.oneSided = true;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Vec2 v = shape.vertices[order[i]];
+        hull.vertices[i] = {static_cast<Real>(v.x), static_cast<Real>(v.y)};
+    }
+    const auto normal = [&](std::size_t from, std::size_t to) {
+        return normalized(perpRight(hull.vertices[to] - hull.vertices[from]));
+    };
+    hull.normals = {normal(0, 1), normal(1, 0), normal(2, 0), normal(1, 3)};
+    return hull;
+}
+
+template <class Real>
 HullT<Real> hullOf(const ShapeInfo& shape) {
+    if (shape.shapeKind() == ShapeKind::ChainSegment) return chainHullOf<Real>(shape);
     HullT<Real> hull;
     hull.count = shape.vertexCount();
     hull.radius = static_cast<Real>(shape.radius);

@@ -309,11 +309,156 @@ HullT<float> moved(const HullT<float>& hull, const PoseT<float>& pose) {
     return out;
 }
 
+/// Whose business it is to push along a normal that leans over an end of a chain segment.
+enum class Pusher { Segment, Face, Neighbour };
+
+/// Where the chain turns away from the front at that end, the normals between the two faces are
+/// those of the vertex, which both segments push along, and those beyond are the neighbour's. Where
+/// it goes straight on or turns to the front, nothing can meet the vertex: what seems to is a shape
+/// that slides over it or lies in the valley, and the face pushes.
+template <class Real>
+Pusher pusherOf(const HullT<Real>& chain, Vec2T<Real> normal) {
+    const Vec2T<Real> edge = chain.vertices[1] - chain.vertices[0];
+    const bool atStart = dot(normal, edge) < Real(0);
+    const Vec2T<Real> beside =
+        atStart ? chain.vertices[0] - chain.vertices[2] : chain.vertices[3] - chain.vertices[1];
+    const Real turn = atStart ? cross(beside, edge) : cross(edge, beside);
+    if (!(turn > Real(0))) return Pusher::Face;
+    const Real lean = dot(normal, beside);
+    const bool between = atStart ? lean >= Real(0) : lean <= Real(0);
+    return between ? Pusher::Segment : Pusher::Neighbour;
+}
+
+/// How high the lowest point of a hull is over the face of the neighbour that a normal leans to. Of
+/// two faces the one over which that is more pushes, as of those of a solid.
+template <class Real>
+Real heightOverNeighbour(const HullT<Real>& chain, const HullT<Real>& b, Vec2T<Real> normal) {
+    const bool atStart = dot(normal, chain.vertices[1] - chain.vertices[0]) < Real(0);
+    const Vec2T<Real> vertex = chain.vertices[atStart ? 0 : 1];
+    const Vec2T<Real> face = chain.normals[atStart ? 2 : 3];
+    Real lowest = dot(face, b.vertices[0] - vertex);
+    for (int j = 1; j < b.count; ++j) {
+        lowest = minOf(lowest, dot(face, b.vertices[at(j)] - vertex));
+    }
+    return lowest;
+}
+
+/// A chain segment against a disc, in the frame of the segment. The front of the chain falls into
+/// the regions that are nearest to each face and to each vertex (Voronoi's): nothing else is
+/// needed.
+template <class Real>
+ManifoldT<Real> chainAndDisc(const HullT<Real>& chain, const HullT<Real>& b, Vec2T<Real> center,
+                             Real margin) {
+    const Vec2T<Real> v1 = chain.vertices[0];
+    const Vec2T<Real> v2 = chain.vertices[1];
+    const Real height = dot(chain.normals[0], center - v1);
+    if (height < Real(0) || height - b.radius > margin) return {};
+    if (dot(center - v1, v2 - v1) < Real(0)) {
+        if (dot(center - v1, v1 - chain.vertices[2]) < Real(0)) return {};
+        return betweenPoints(v1, center, Real(0), b.radius, 0, 0, margin);
+    }
+    if (dot(center - v2, v2 - v1) > Real(0)) {
+        if (dot(center - v2, chain.vertices[3] - v2) > Real(0)) return {};
+        return betweenPoints(v2, center, Real(0), b.radius, 1, 0, margin);
+    }
+    ManifoldT<Real> m;
+    m.normal = chain.normals[0];
+    addPoint(m, center - height * m.normal, center, height - b.radius, Real(0), b.radius, 0, 0);
+    return m;
+}
+
+/// What is beyond the ends of a face is the business of its neighbours.
+template <class Real>
+ManifoldT<Real> clipToFace(const HullT<Real>& chain, const HullT<Real>& b, Real margin) {
+    const ManifoldT<Real> all = clipEdges(chain, 0, b, false, margin);
+    const Vec2T<Real> along = perpLeft(chain.normals[0]);
+    const Real extent = dot(chain.vertices[1] - chain.vertices[0], along);
+    ManifoldT<Real> m;
+    m.normal = all.normal;
+    for (int i = 0; i < all.count; ++i) {
+        const Real at = dot(all.points[i].point - chain.vertices[0], along);
+        const Real slack = Real(2.0 * featureTolerance);
+        if (at >= -slack && at <= extent + slack) m.points[m.count++] = all.points[i];
+    }
+    return m;
+}
+
+/// A chain segment against a hull of two or more vertices, in the frame of the segment.
+template <class Real>
+ManifoldT<Real> chainAndHull(const HullT<Real>& chain, const HullT<Real>& b, Real margin) {
+    Vec2T<Real> sum;
+    Real face{0};
+    for (int j = 0; j < b.count; ++j) {
+        const Vec2T<Real> w = b.vertices[at(j)] - chain.vertices[0];
+        const Real height = dot(chain.normals[0], w);
+        sum += w;
+        face = j == 0 ? height : minOf(face, height);
+    }
+    // Its middle decides on which side a hull is: one that came through from behind is let go.
+    if (dot(chain.normals[0], sum) < Real(0)) return {};
+    if (face > b.radius + margin) return {};
+    const Axis<Real> axis = bestAxis(b, chain);
+    if (axis.separation > b.radius + margin) return {};
+
+    const bool flipped = axis.separation > face + Real(0.1 * featureTolerance);
+    const Real separation = flipped ? axis.separation : face;
+    if (separation > Real(featureTolerance) || b.count == 2) {
+        Nearest<Real> nearest;
+        bool found = false;
+        nearestToEdges(chain, b, false, found, nearest);
+        nearestToEdges(b, chain, true, found, nearest);
+        const Real across = Real(featureTolerance);
+        const Real ahead = maxOf(separation, Real(0));
+        if (nearest.twoVertices && nearest.squared > ahead * ahead + across * across) {
+            const Pusher pusher = pusherOf(chain, nearest.pointB - nearest.pointA);
+            if (pusher == Pusher::Neighbour) return {};
+            if (pusher == Pusher::Face) return clipToFace(chain, b, margin);
+            return betweenPoints(nearest.pointA, nearest.pointB, Real(0), b.radius, nearest.vertexA,
+                                 nearest.vertexB, margin);
+        }
+    }
+    if (!flipped) return clipToFace(chain, b, margin);
+    const Vec2T<Real> normal = -b.normals[at(axis.edge)];
+    const Pusher pusher = pusherOf(chain, normal);
+    if (pusher == Pusher::Segment) return clipEdges(b, axis.edge, chain, true, margin);
+    if (pusher == Pusher::Neighbour && heightOverNeighbour(chain, b, normal) > face) return {};
+    return clipToFace(chain, b, margin);
+}
+
+/// A manifold of B and A, in the frame of B, as that of A and B in the frame of A.
+template <class Real>
+ManifoldT<Real> turnedRound(ManifoldT<Real> m, const PoseT<Real>& relative) {
+    m.normal = -rotate(relative.q, m.normal);
+    for (ManifoldPointT<Real>& p : m.points) {
+        p.point = transform(relative, p.point);
+        p.feature = static_cast<std::uint16_t>(((p.feature & 0xff) << 8) | (p.feature >> 8));
+    }
+    return m;
+}
+
+/// Where at least one is a chain segment.
+template <class Real>
+ManifoldT<Real> withChain(const HullT<Real>& a, const HullT<Real>& b, const PoseT<Real>& relative,
+                          Real margin) {
+    if (a.oneSided && b.oneSided) return {};
+    if (a.oneSided) {
+        if (b.count > 1) return chainAndHull(a, moved(b, relative), margin);
+        return chainAndDisc(a, b, transform(relative, b.vertices[0]), margin);
+    }
+    if (a.count == 1) {
+        return turnedRound(chainAndDisc(b, a, untransform(relative, a.vertices[0]), margin),
+                           relative);
+    }
+    const PoseT<Real> back{untransform(relative, Vec2T<Real>{}), {relative.q.c, -relative.q.s}};
+    return turnedRound(chainAndHull(b, moved(a, back), margin), relative);
+}
+
 }  // namespace
 
 template <class Real>
 ManifoldT<Real> collide(const HullT<Real>& a, const HullT<Real>& b, const PoseT<Real>& relative,
                         Real margin) {
+    if (a.oneSided || b.oneSided) return withChain(a, b, relative, margin);
     if (b.count == 1) {
         const Vec2T<Real> center = transform(relative, b.vertices[0]);
         if (a.count == 1) {
@@ -323,13 +468,8 @@ ManifoldT<Real> collide(const HullT<Real>& a, const HullT<Real>& b, const PoseT<
     }
     if (a.count == 1) {
         // In the frame of B, then turned back.
-        ManifoldT<Real> m = hullAndDisc(b, a, untransform(relative, a.vertices[0]), margin);
-        m.normal = -rotate(relative.q, m.normal);
-        for (ManifoldPointT<Real>& p : m.points) {
-            p.point = transform(relative, p.point);
-            p.feature = static_cast<std::uint16_t>(((p.feature & 0xff) << 8) | (p.feature >> 8));
-        }
-        return m;
+        return turnedRound(hullAndDisc(b, a, untransform(relative, a.vertices[0]), margin),
+                           relative);
     }
     return hulls(a, moved(b, relative), margin);
 }

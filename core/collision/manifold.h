@@ -6,7 +6,9 @@
 /// Method: separating axes over the edge normals of both cores, then clipping the incident edge
 /// against the reference edge (Gottschalk, Lin and Manocha 1996 for the axes; Catto, "Contact
 /// Manifolds", GDC 2007 for clipping); where the cores are apart and nearest at two vertices, one
-/// point along the line between them.
+/// point along the line between them. Chain segments push along no normal but those of their own
+/// part of the chain's Gauss image, from the normal of the face before to that of the face after;
+/// two of them do not touch.
 #pragma once
 
 #include <cstdint>

@@ -114,6 +114,8 @@ bool Checker::vertexCount(const Place& place, const ShapeDef& shape) {
             return count == 2 || fail(place, "a capsule has 2 vertices, not " + text(count));
         case ShapeKind::Segment:
             return count == 2 || fail(place, "a segment has 2 vertices, not " + text(count));
+        case ShapeKind::ChainSegment:
+            return count == 4 || fail(place, "a chain segment has 4 vertices, not " + text(count));
         case ShapeKind::Polygon:
             return (count >= 3 && count <= maxPolygonVertices) ||
                    fail(place, "a polygon has 3 to 8 vertices, not " + text(count));
@@ -155,8 +157,9 @@ bool Checker::polygon(const Place& place, const ShapeDef& shape) {
 }
 
 bool Checker::shape(const Place& place, const ShapeDef& shape) {
-    if (static_cast<std::uint32_t>(shape.kind) > static_cast<std::uint32_t>(ShapeKind::Segment)) {
-        return fail(place.at("kind"), "is not circle, capsule, polygon or segment");
+    if (static_cast<std::uint32_t>(shape.kind) >
+        static_cast<std::uint32_t>(ShapeKind::ChainSegment)) {
+        return fail(place.at("kind"), "is not circle, capsule, polygon, segment or chain segment");
     }
     if (!vertexCount(place.at("vertices"), shape)) return false;
     const std::size_t count = shape.vertexCount;
@@ -164,7 +167,8 @@ bool Checker::shape(const Place& place, const ShapeDef& shape) {
         const Place vertices = place.at("vertices", static_cast<std::int64_t>(i));
         if (!within(vertices, shape.vertices[i], caps::maxExtent)) return false;
     }
-    for (std::size_t i = 0; count > 1 && i < (count == 2 ? 1 : count); ++i) {
+    const std::size_t edges = shape.kind == ShapeKind::Polygon ? count : count - 1;
+    for (std::size_t i = 0; i < edges; ++i) {
         const std::size_t next = (i + 1) % count;
         if (length(inDouble(shape.vertices[next]) - inDouble(shape.vertices[i])) <
             static_cast<double>(caps::minEdge)) {
@@ -174,7 +178,7 @@ bool Checker::shape(const Place& place, const ShapeDef& shape) {
     }
     if (shape.kind == ShapeKind::Polygon && !polygon(place, shape)) return false;
     const bool round = shape.kind == ShapeKind::Circle || shape.kind == ShapeKind::Capsule;
-    const bool segment = shape.kind == ShapeKind::Segment;
+    const bool segment = shape.kind == ShapeKind::Segment || shape.kind == ShapeKind::ChainSegment;
     if (!within(place.at("radius"), shape.radius, round ? caps::minEdge : 0.0f,
                 segment ? 0.0f : caps::maxExtent)) {
         return false;
@@ -196,7 +200,8 @@ bool Checker::shape(const Place& place, const ShapeDef& shape) {
 bool Checker::massOf(const Place& place, const BodyDef& body) {
     const bool hasMass =
         std::any_of(body.shapes.begin(), body.shapes.end(), [](const ShapeDef& shape) {
-            return shape.kind != ShapeKind::Segment && shape.density > 0.0f;
+            return shape.kind != ShapeKind::Segment && shape.kind != ShapeKind::ChainSegment &&
+                   shape.density > 0.0f;
         });
     return hasMass || fail(place,
                            "a dynamic body needs mass: give it a circle, capsule or polygon with "

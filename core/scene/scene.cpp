@@ -69,6 +69,26 @@ ShapeDef ShapeDef::polygon(std::span<const Vec2> points, float radius) {
     return shape;
 }
 
+ShapeDef ShapeDef::chainSegment(Vec2 before, Vec2 a, Vec2 b, Vec2 after) {
+    ShapeDef shape;
+    shape.kind = ShapeKind::ChainSegment;
+    shape.vertexCount = 4;
+    shape.vertices = {before, a, b, after};
+    shape.radius = 0.0f;
+    return shape;
+}
+
+std::vector<ShapeDef> ShapeDef::chain(std::span<const Vec2> points, bool loop) {
+    const std::size_t n = points.size();
+    std::vector<ShapeDef> segments;
+    if (n < (loop ? 3u : 4u)) return segments;
+    for (std::size_t i = 0; i < (loop ? n : n - 3); ++i) {
+        segments.push_back(
+            chainSegment(points[i], points[(i + 1) % n], points[(i + 2) % n], points[(i + 3) % n]));
+    }
+    return segments;
+}
+
 std::vector<BodyId> bodyIdsOf(const Scene& scene) {
     return idsOf(scene.bodies, scene.counters.nextBody);
 }

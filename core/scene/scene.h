@@ -51,13 +51,20 @@ constexpr bool mayTouch(const Filter& a, const Filter& b) {
     return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
-enum class ShapeKind : std::uint8_t { Circle, Capsule, Polygon, Segment };
+enum class ShapeKind : std::uint8_t { Circle, Capsule, Polygon, Segment, ChainSegment };
 
 /// A convex shape in the frame of its body's origin: the set of points within `radius` of the
 /// convex hull of `vertices`. Circle: 1 vertex. Capsule and segment: 2, at least `caps::minEdge`
 /// apart. Polygon: 3 to 8, convex, counter-clockwise, edges of at least `caps::minEdge`, every
 /// vertex at least `caps::minVertexDepth` inside of every edge that it does not end (so none is
 /// collinear). A segment has radius 0 and no mass. Vertices beyond `vertexCount` mean nothing.
+///
+/// A chain segment is one side of a segment, with its neighbours in a chain: 4 vertices p0 p1 p2
+/// p3, each at least `caps::minEdge` from the next, radius 0, no mass. It reaches from p1 to p2 and
+/// touches what is to the right of that direction; nothing touches its back, another chain segment,
+/// or the lines to p0 and p3, its ghosts. Those say how the chain goes on: a shape that slides over
+/// p1 or p2 is pushed along no normal but those between the faces that meet there, so it does not
+/// catch on vertices inside the chain. Counter-clockwise loops are solid, clockwise ones rooms.
 struct ShapeDef {
     ShapeKind kind = ShapeKind::Circle;
     std::uint8_t vertexCount = 1;
@@ -74,6 +81,11 @@ struct ShapeDef {
     static ShapeDef box(float hx, float hy, Vec2 center = {}, Rotation q = {}, float radius = 0.0f);
     /// Takes the points as they are; `check` refuses what is not convex or counter-clockwise.
     static ShapeDef polygon(std::span<const Vec2> points, float radius = 0.0f);
+    static ShapeDef chainSegment(Vec2 before, Vec2 a, Vec2 b, Vec2 after);
+    /// The segments of a chain through the points, in their order. A loop of n points, 3 or more,
+    /// has n; an open chain of n points, 4 or more, n − 3: the first and the last are ghosts. Fewer
+    /// points give none.
+    static std::vector<ShapeDef> chain(std::span<const Vec2> points, bool loop);
 
     friend bool operator==(const ShapeDef&, const ShapeDef&) = default;
 };
@@ -208,7 +220,7 @@ struct Scene {
 };
 
 /// Hard limits of any scene, whatever it says of itself.
-inline constexpr std::uint32_t maxShapesPerBody = 256;
+inline constexpr std::uint32_t maxShapesPerBody = 1024;
 inline constexpr float maxCoordinate = 1.0e6f;  ///< m, of positions
 inline constexpr float maxSpeed = 1.0e5f;       ///< m/s and rad/s, of definitions
 

@@ -21,7 +21,7 @@ BodyDef bodyOf(BodyType type, Vec2 position, const ShapeDef& shape) {
 
 void addStatic(Scene& scene, std::span<const ShapeDef> shapes) {
     while (!shapes.empty()) {
-        const std::size_t some = std::min<std::size_t>(shapes.size(), maxShapesPerBody);
+        const std::size_t some = std::min(shapes.size(), staticShapes);
         BodyDef body;
         body.shapes.assign(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(some));
         add(scene, body);

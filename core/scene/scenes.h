@@ -49,7 +49,9 @@ std::uint32_t add(Scene& scene, const BodyDef& body);
 /// A body of one shape.
 BodyDef bodyOf(BodyType type, Vec2 position, const ShapeDef& shape);
 
-/// Adds static bodies at the origin that hold the shapes, as many to a body as it may have.
+/// Adds static bodies at the origin that hold the shapes, `staticShapes` to a body: fewer than it
+/// may have, as how many bodies there are is part of every result.
+inline constexpr std::size_t staticShapes = 256;
 void addStatic(Scene& scene, std::span<const ShapeDef> shapes);
 
 /// Boxes, a metre each and a little longer so that no gap is between them, that make a floor from

@@ -164,8 +164,7 @@ void rainHost(Values values, std::uint64_t tick, std::vector<Action>& actions) {
     const std::uint64_t turn = tick / period;
     if (turn >= columns) {
         // Ids come from a counter, and every turn takes as many.
-        const std::uint64_t ground =
-            (floors * floorBoxes + maxShapesPerBody - 1) / maxShapesPerBody;
+        const std::uint64_t ground = (floors * floorBoxes + staticShapes - 1) / staticShapes;
         const std::uint64_t aTurn = std::uint64_t{floors} * group * bonesOf;
         const std::uint64_t oldest = ground + 1 + (turn - columns) * aTurn;
         for (std::uint64_t id = oldest; id < oldest + aTurn; ++id) {

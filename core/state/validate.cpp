@@ -278,6 +278,9 @@ std::string faultOf(const ShapeInfo& s) {
         case 2:
             countFits = n >= 3 && n <= maxPolygonVertices;
             break;
+        case 4:
+            countFits = n == 4;
+            break;
         default:
             return "kind: no such shape";
     }
@@ -296,7 +299,7 @@ std::string faultOf(const ShapeInfo& s) {
     for (int i = 0; n > 1 && i < n; ++i) {
         if (hull.normals[static_cast<std::size_t>(i)] == Vec2{}) return "vertices: two coincide";
     }
-    if (n > 2 && !isConvex(hull)) return "vertices: not convex";
+    if (s.shapeKind() == ShapeKind::Polygon && !isConvex(hull)) return "vertices: not convex";
     return {};
 }
 

@@ -122,7 +122,7 @@ std::vector<View::Shape> readShapes(Reading& in, schema::View::Reader from, std:
                 in.refuse("vertexCount", std::to_string(own) + " do not fit");
             }
             View::Shape read{shape.getBody(),
-                             in.choice("kind", shape.getKind(), ShapeKind::Segment),
+                             in.choice("kind", shape.getKind(), ShapeKind::ChainSegment),
                              in.real("radius", shape.getRadius()),
                              {}};
             for (std::size_t end = used + 2 * own; used < end; used += 2) {

@@ -33,7 +33,7 @@ void put(schema::Shape::Builder to, const ShapeDef& shape) {
 
 ShapeDef readShape(Reading& in, schema::Shape::Reader from) {
     ShapeDef shape;
-    shape.kind = in.choice("kind", from.getKind(), ShapeKind::Segment);
+    shape.kind = in.choice("kind", from.getKind(), ShapeKind::ChainSegment);
     const auto vertices = from.getVertices();
     const std::size_t count = in.sizeOf("vertices", vertices, maxPolygonVertices, 8);
     shape.vertexCount = static_cast<std::uint8_t>(count);

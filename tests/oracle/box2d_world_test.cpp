@@ -33,6 +33,10 @@ Scene commonScene() {
     scene.gravity = {0.5f, -9.0f};
     scene.bodies.push_back(
         bodyOf(BodyType::Static, {0.0f, -1.0f}, ShapeDef::segment({-9.0f, 0.0f}, {9.0f, 1.0f})));
+    const std::array<Vec2, 3> corners{Vec2{20.0f, 0.0f}, Vec2{22.0f, 0.5f}, Vec2{21.0f, 3.0f}};
+    for (const ShapeDef& side : ShapeDef::chain(corners, true)) {
+        scene.bodies[0].shapes.push_back(side);
+    }
     BodyDef box = bodyOf(BodyType::Dynamic, {1.0f, 5.0f}, boxFromTheRight(0.5f, 0.25f));
     box.velocity = {1.0f, 2.0f};
     box.angularVelocity = 3.0f;
@@ -312,13 +316,22 @@ TEST(Box2DWorld, IsNotedWhereHuestepHasNoSuchThing) {
     world.CreateJoint(&pulley);
     const Result<B2Import> back = sceneOfB2World(world);
     ASSERT_TRUE(back.ok()) << back.error().message;
-    EXPECT_EQ(back->notes,
-              (std::vector<std::string>{
-                  "bodies[0]: was a bullet in Box2D, is a plain body here",
-                  "bodies[0].fixtures[1]: is a sensor, which Huestep does not have",
-                  "bodies[1].fixtures[0]: was a chain, is a row of two-sided segments here",
-                  "joints[0]: is a joint of a kind that Huestep does not have"}));
-    EXPECT_EQ(back->scene.bodies[1].shapes.size(), 3u);
+    EXPECT_EQ(back->notes, (std::vector<std::string>{
+                               "bodies[0]: was a bullet in Box2D, is a plain body here",
+                               "bodies[0].fixtures[1]: is a sensor, which Huestep does not have",
+                               "joints[0]: is a joint of a kind that Huestep does not have"}));
+    // A chain's ends have the ghosts that it was given.
+    EXPECT_EQ(back->scene.bodies[1].shapes, ([] {
+                  std::vector<ShapeDef> shapes = ShapeDef::chain(
+                      std::array{Vec2{4.0f, 1.0f}, Vec2{3.0f, 0.0f}, Vec2{1.0f, -1.0f},
+                                 Vec2{-1.0f, -1.0f}, Vec2{-3.0f, 0.0f}, Vec2{-4.0f, 1.0f}},
+                      false);
+                  for (ShapeDef& shape : shapes) {
+                      shape.density = 0.0f;
+                      shape.material.friction = 0.2f;
+                  }
+                  return shapes;
+              }()));
     EXPECT_TRUE(back->scene.joints.empty());
 }
 

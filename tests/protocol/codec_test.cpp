@@ -327,8 +327,8 @@ TEST(CodecLimits, SpawnedBodiesShapesAndJoints) {
     EXPECT_EQ(with(1, maxShapesPerBody, 0), "accepted");
     EXPECT_EQ(with(1025, 0, 0), "Frame.commands[0].spawn.bodies: 1025 entries, at most 1024");
     EXPECT_EQ(with(0, 0, 1025), "Frame.commands[0].spawn.joints: 1025 entries, at most 1024");
-    EXPECT_EQ(with(2, 257, 0),
-              "Frame.commands[0].spawn.bodies[1].shapes: 257 entries, at most 256");
+    EXPECT_EQ(with(2, 1025, 0),
+              "Frame.commands[0].spawn.bodies[1].shapes: 1025 entries, at most 1024");
     Spawn spawn;
     spawn.bodies.resize(1);
     spawn.bodies[0].shapes.resize(1);
@@ -390,9 +390,9 @@ TEST(CodecLimits, ValuesBeyondAnEnumAreRefused) {
     EXPECT_EQ(answerTo(Frame{0, {{0, 1, spawn}}, {}, 0, 0}),
               "Frame.commands[0].spawn.bodies[1].type: unknown value 3");
     spawn = samples::sampleSpawn();
-    spawn.bodies[1].shapes[0].kind = static_cast<ShapeKind>(4);
+    spawn.bodies[1].shapes[0].kind = static_cast<ShapeKind>(5);
     EXPECT_EQ(answerTo(Frame{0, {{0, 1, spawn}}, {}, 0, 0}),
-              "Frame.commands[0].spawn.bodies[1].shapes[0].kind: unknown value 4");
+              "Frame.commands[0].spawn.bodies[1].shapes[0].kind: unknown value 5");
     spawn = samples::sampleSpawn();
     spawn.joints[0].kind = static_cast<JointKind>(5);
     EXPECT_EQ(answerTo(Frame{0, {{0, 1, spawn}}, {}, 0, 0}),

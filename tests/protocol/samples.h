@@ -59,7 +59,7 @@ class Draw {
 
 inline ShapeDef randomShape(Draw& draw) {
     ShapeDef shape;
-    shape.kind = static_cast<ShapeKind>(draw.below(4));
+    shape.kind = static_cast<ShapeKind>(draw.below(5));
     shape.vertexCount = static_cast<std::uint8_t>(1 + draw.below(maxPolygonVertices));
     for (std::size_t i = 0; i < shape.vertexCount; ++i) shape.vertices[i] = draw.point();
     shape.radius = draw.real();
@@ -177,7 +177,7 @@ inline View randomView(Draw& draw) {
     for (std::size_t i = 0; i < bodies; ++i) view.bodies.push_back(draw.word());
     for (std::size_t i = draw.below(20); i > 0; --i) {
         View::Shape shape{static_cast<std::uint32_t>(draw.below(bodies)),
-                          static_cast<ShapeKind>(draw.below(4)),
+                          static_cast<ShapeKind>(draw.below(5)),
                           draw.real(),
                           {}};
         for (std::size_t k = 1 + draw.below(8); k > 0; --k) shape.vertices.push_back(draw.point());

@@ -321,7 +321,8 @@ TEST(SceneFile, BadDocumentsAreRefusedWithTheirPath) {
         {withShape(R"("kind": "circle")"), "bodies[0].shapes[0].vertices: is missing"},
         {withShape(R"("vertices": [])"), "bodies[0].shapes[0].kind: is missing"},
         {withShape(R"("kind": "blob", "vertices": [])"),
-         "bodies[0].shapes[0].kind: \"blob\" is none of circle, capsule, polygon, segment"},
+         "bodies[0].shapes[0].kind: \"blob\" is none of circle, capsule, polygon, segment, "
+         "chainSegment"},
         {withShape(R"("kind": "polygon", "vertices": [0,0,0,0,0,0,0,0,0])"),
          "bodies[0].shapes[0].vertices: 9 are more than 8"},
         {withShape(R"("kind": "polygon", "vertices": [{"x": 0, "y": 0}, 7])"),

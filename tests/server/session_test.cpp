@@ -113,6 +113,18 @@ TEST(Session, ThatIsRecoveredGoesOnWithItsScriptFromItsTick) {
     EXPECT_EQ(session.world().fullRoot(), whole.world().fullRoot());
 }
 
+TEST(Session, AViewShowsAChainWithoutItsGhosts) {
+    Scene scene = deskScene();
+    scene.bodies[0].shapes = {
+        ShapeDef::chainSegment({9.0f, 1.0f}, {8.0f, 0.0f}, {-8.0f, 0.0f}, {-9.0f, 1.0f})};
+    Bench bench({}, scene);
+    bench.close();
+    const protocol::View view = bench.session.view(true);
+    ASSERT_FALSE(view.shapes.empty());
+    EXPECT_EQ(view.shapes[0].kind, ShapeKind::ChainSegment);
+    EXPECT_EQ(view.shapes[0].vertices, (std::vector<Vec2>{{8.0f, 0.0f}, {-8.0f, 0.0f}}));
+}
+
 TEST(Session, AFrameHasItsCommandsInKeyOrderAndTheRootItIsAppliedTo) {
     Bench bench;
     const PlayerId one = bench.seat(), two = bench.seat();

@@ -188,8 +188,20 @@ Status Box2d3Engine::addShape(const ShapeDef& shape, b2BodyId body, const std::s
         b2CreatePolygonShape(body, &def, &polygon);
         return Done{};
     }
-    if (length(shape.vertices[1] - shape.vertices[0]) <= 0.005f) {
+    const std::size_t first = shape.kind == ShapeKind::ChainSegment ? 1 : 0;
+    if (length(shape.vertices[first + 1] - shape.vertices[first]) <= 0.005f) {
         return Error{path + ": Box2D 3 takes nothing shorter than 5 mm"};
+    }
+    if (shape.kind == ShapeKind::ChainSegment) {
+        // An open chain of four points is one segment between two ghosts.
+        b2ChainDef chain = b2DefaultChainDef();
+        chain.points = points.data();
+        chain.count = 4;
+        chain.materials = &def.material;
+        chain.materialCount = 1;
+        chain.filter = def.filter;
+        b2CreateChain(body, &chain);
+        return Done{};
     }
     if (shape.kind == ShapeKind::Capsule) {
         const b2Capsule capsule{points[0], points[1], shape.radius};

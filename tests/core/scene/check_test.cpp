@@ -133,8 +133,8 @@ const Case bodyCases[] = {
          s.bodies[1].asleep = true;
          s.bodies[1].velocity.y = 1.0f;
      }},
-    {"bodies[1].shapes: 257 are more than the 256 a body may have",
-     [](Scene& s) { s.bodies[1].shapes.assign(257, ShapeDef::circle({}, 1.0f)); }},
+    {"bodies[1].shapes: 1025 are more than the 1024 a body may have",
+     [](Scene& s) { s.bodies[1].shapes.assign(1025, ShapeDef::circle({}, 1.0f)); }},
     {"bodies[2]: a dynamic body needs mass: give it a circle, capsule or polygon with a density "
      "above 0",
      [](Scene& s) { s.bodies[2].shapes.clear(); }},
@@ -146,6 +146,12 @@ const Case bodyCases[] = {
      [](Scene& s) {
          s.bodies[2].shapes[0] = ShapeDef::segment({}, {1.0f, 0.0f});
      }},
+    {"bodies[2]: a dynamic body needs mass: give it a circle, capsule or polygon with a density "
+     "above 0",
+     [](Scene& s) {
+         s.bodies[2].shapes =
+             ShapeDef::chain(std::array{Vec2{}, Vec2{1.0f, 0.0f}, Vec2{0.0f, 1.0f}}, true);
+     }},
 };
 INSTANTIATE_TEST_SUITE_P(Body, SpoiledScene, testing::ValuesIn(bodyCases));
 
@@ -154,8 +160,21 @@ const Case shapeCases[] = {
      [](Scene& s) { s.bodies[3].shapes[0].vertices[2].x = notANumber; }},
     {"bodies[3].shapes[1].vertices[1].y: must be from -10000 to 10000, is 20000",
      [](Scene& s) { s.bodies[3].shapes[1].vertices[1].y = 2e4f; }},
-    {"bodies[3].shapes[0].kind: is not circle, capsule, polygon or segment",
-     [](Scene& s) { s.bodies[3].shapes[0].kind = static_cast<ShapeKind>(4); }},
+    {"bodies[3].shapes[0].kind: is not circle, capsule, polygon, segment or chain segment",
+     [](Scene& s) { s.bodies[3].shapes[0].kind = static_cast<ShapeKind>(5); }},
+    {"bodies[0].shapes[0].vertices: a chain segment has 4 vertices, not 2",
+     [](Scene& s) { s.bodies[0].shapes[0].kind = ShapeKind::ChainSegment; }},
+    {"bodies[0].shapes[0].vertices[3]: less than 0.001 m from vertex 2",
+     [](Scene& s) {
+         s.bodies[0].shapes[0] =
+             ShapeDef::chainSegment({}, {1.0f, 0.0f}, {2.0f, 0.0f}, {2.0f, 0.0f});
+     }},
+    {"bodies[0].shapes[0].radius: must be from 0 to 0, is 0.25",
+     [](Scene& s) {
+         s.bodies[0].shapes[0] =
+             ShapeDef::chainSegment({}, {1.0f, 0.0f}, {2.0f, 0.0f}, {3.0f, 0.0f});
+         s.bodies[0].shapes[0].radius = 0.25f;
+     }},
     {"bodies[3].shapes[0].vertices: a polygon has 3 to 8 vertices, not 2",
      [](Scene& s) { s.bodies[3].shapes[0].vertexCount = 2; }},
     {"bodies[3].shapes[0].vertices: a polygon has 3 to 8 vertices, not 9",

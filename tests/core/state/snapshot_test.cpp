@@ -246,6 +246,11 @@ TEST(Snapshot, ThatContradictsItselfIsRefusedByRecordAndField) {
     expect("body 1 inverseMass", [](WorldState& s) { s.bodies[1].inverseMass = 0; });
     expect("body 0 inverseMass", [](WorldState& s) { s.bodies[0].inverseMass = 1; });
     expect("shape 1 kind", [](WorldState& s) { s.shapes[1].kind = 9; });
+    expect("shape 1 kind", [](WorldState& s) { s.shapes[1].kind = 4 | (2 << 8); });
+    expect("shape 1 vertices", [](WorldState& s) {
+        s.shapes[1].kind = 4 | (4 << 8);
+        s.shapes[1].vertices[3] = s.shapes[1].vertices[2];
+    });
     expect("shape 1 kind", [](WorldState& s) { s.shapes[1].kind = 2 | (9 << 8); });
     expect("shape 1 kind", [](WorldState& s) { s.shapes[1].kind = 0 | (4 << 8); });
     expect("shape 1 vertices",
