@@ -107,6 +107,7 @@ std::vector<CatalogEntry> makeCatalog() {
          1200,
          {{"n", 20, 1, 200, "boxes"}},
          stack},
+        {"terrain", "chains: a wavy room, a turning island, a conveyor", 600, {}, terrain},
         {"tumbler",
          "boxes in a turning drum: contacts that come and go all the time",
          750,

@@ -42,6 +42,7 @@ Scene hinges(Values values);
 Scene joints(Values values);
 Scene mixed(Values values);
 Scene sandbox(Values values);
+Scene terrain(Values values);
 
 /// Adds a body and returns its place.
 std::uint32_t add(Scene& scene, const BodyDef& body);

@@ -77,6 +77,7 @@ std::vector<GoldenRun> goldenRuns() {
          true},
         {"joints", "welds and slides with every part", {0, 1, 60, 240, 600}, 600},
         {"mixed", "every shape, joint, filter and kind of body", {0, 1, 60, 240, 600}, 600},
+        {"terrain", "every shape on chains, open and closed", {0, 1, 60, 240, 600}, 600},
         {"sandbox",
          "players who join, push, grab, spawn, remove and leave",
          {1, 60, 240, 420},

@@ -92,6 +92,13 @@ Scene randomScene(Random& random) {
     room.shapes = {ShapeDef::box(10.0f, 1.0f, {0.0f, -1.0f}),
                    ShapeDef::segment({-8.0f, 0.0f}, {-8.0f, 12.0f}),
                    ShapeDef::capsule({8.0f, 0.0f}, {8.0f, 12.0f}, 0.2f)};
+    std::vector<Vec2> wave;
+    for (int i = 0; i < 12; ++i) {
+        wave.push_back({6.0f - 0.8f * static_cast<float>(i), random.betweenF(1.0, 2.0)});
+    }
+    for (const ShapeDef& segment : ShapeDef::chain(wave, random.once(2))) {
+        room.shapes.push_back(segment);
+    }
     scene.bodies.push_back(room);
     const std::uint32_t bodies = 20 + random.below(60);
     for (std::uint32_t i = 0; i < bodies; ++i) scene.bodies.push_back(randomBody(random));
