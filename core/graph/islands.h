@@ -13,7 +13,7 @@ struct Link {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     std::uint32_t source = 0;
-    bool pin = false;  ///< a joint that can be solved in lanes, see `isPin`
+    bool revolute = false;  ///< a joint that is solved in lanes
     friend bool operator==(const Link&, const Link&) = default;
 };
 

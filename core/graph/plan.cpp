@@ -144,11 +144,11 @@ struct Lanes {
 /// stay together.
 void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> places,
                      std::span<const std::uint8_t> colours) {
-    enum Kind : std::uint8_t { Joint, Pin, ContactLane };
+    enum Kind : std::uint8_t { Joint, RevoluteLane, ContactLane };
     const std::uint32_t begin = linkStart[batch];
     const auto kindOf = [&](std::uint32_t link, std::uint8_t colour) {
         if (link >= plan.jointLinks) return ContactLane;
-        return plan.links[link].pin && !isSerial(colour) ? Pin : Joint;
+        return plan.links[link].revolute && !isSerial(colour) ? RevoluteLane : Joint;
     };
     std::array<std::array<std::uint32_t, 3>, colourCount> counts{};
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
@@ -157,35 +157,36 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
         ++counts[colours[i]][kindOf(link, colours[i])];
     }
     Lanes contacts{plan.contactOfLane, plan.lanePlaces};
-    Lanes pins{plan.pinOfLane, plan.pinPlaces};
+    Lanes revolutes{plan.revoluteOfLane, plan.revolutePlaces};
     Batch& b = plan.batches[batch];
     b.firstColour = static_cast<std::uint32_t>(plan.runs.size());
     b.firstBlock = contacts.blocks();
-    b.firstPinBlock = pins.blocks();
+    b.firstRevoluteBlock = revolutes.blocks();
     b.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     std::array<std::array<std::uint32_t, 3>, colourCount> next{};
     for (std::size_t c = 0; c < colourCount; ++c) {
         const auto& count = counts[c];
-        if (count[Joint] + count[Pin] + count[ContactLane] == 0) continue;
+        if (count[Joint] + count[RevoluteLane] + count[ContactLane] == 0) continue;
         ColourRun run;
         run.colour = static_cast<std::uint8_t>(c);
         run.firstBlock = contacts.blocks();
         run.contactCount = count[ContactLane];
         run.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
         run.jointCount = count[Joint];
-        run.firstPinBlock = pins.blocks();
-        run.pinCount = count[Pin];
+        run.firstRevoluteBlock = revolutes.blocks();
+        run.revoluteCount = count[RevoluteLane];
         plan.runs.push_back(run);
-        next[c] = {run.firstJoint, run.firstPinBlock * blockLanes, run.firstBlock * blockLanes};
+        next[c] = {run.firstJoint, run.firstRevoluteBlock * blockLanes,
+                   run.firstBlock * blockLanes};
         contacts.grow(count[ContactLane]);
-        pins.grow(count[Pin]);
+        revolutes.grow(count[RevoluteLane]);
         plan.jointOrder.resize(plan.jointOrder.size() + count[Joint]);
         plan.jointPlaces.resize(plan.jointOrder.size());
         if (isSerial(run.colour)) plan.overflow += count[Joint] + count[ContactLane];
     }
     b.endColour = static_cast<std::uint32_t>(plan.runs.size());
     b.endBlock = contacts.blocks();
-    b.endPinBlock = pins.blocks();
+    b.endRevoluteBlock = revolutes.blocks();
     b.endJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
@@ -197,7 +198,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
             plan.jointOrder[at] = source;
             plan.jointPlaces[at] = places[i];
         } else {
-            const Lanes& lanes = kind == Pin ? pins : contacts;
+            const Lanes& lanes = kind == RevoluteLane ? revolutes : contacts;
             lanes.sourceOf[at] = source;
             lanes.places[at] = places[i];
         }
@@ -221,8 +222,8 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.lanePlaces.clear();
     plan.jointOrder.clear();
     plan.jointPlaces.clear();
-    plan.pinOfLane.clear();
-    plan.pinPlaces.clear();
+    plan.revoluteOfLane.clear();
+    plan.revolutePlaces.clear();
     plan.colourOfLink.assign(plan.links.size(), 0);
     plan.colours = plan.overflow = 0;
 

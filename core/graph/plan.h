@@ -16,15 +16,15 @@ namespace huestep {
 
 inline constexpr std::uint32_t none = 0xffffffffu;
 
-/// Constraints of one colour of one batch: runs of contact blocks, of pin blocks and of
+/// Constraints of one colour of one batch: runs of contact blocks, of revolute blocks and of
 /// other joints.
 struct ColourRun {
     std::uint32_t firstBlock = 0;
     std::uint32_t contactCount = 0;
     std::uint32_t firstJoint = 0;
     std::uint32_t jointCount = 0;
-    std::uint32_t firstPinBlock = 0;
-    std::uint32_t pinCount = 0;
+    std::uint32_t firstRevoluteBlock = 0;
+    std::uint32_t revoluteCount = 0;
     std::uint8_t colour = 0;
 };
 
@@ -35,7 +35,7 @@ struct Batch {
     std::uint32_t firstColour = 0, endColour = 0;  ///< runs
     std::uint32_t firstBlock = 0, endBlock = 0;    ///< of contacts
     std::uint32_t firstJoint = 0, endJoint = 0;    ///< in solving order
-    std::uint32_t firstPinBlock = 0, endPinBlock = 0;
+    std::uint32_t firstRevoluteBlock = 0, endRevoluteBlock = 0;
     std::uint32_t constraints = 0;
     bool giant = false;
 };
@@ -57,10 +57,10 @@ struct Plan {
     std::vector<ConstraintBodies> lanePlaces;  ///< likewise → solver places
     std::vector<std::uint32_t> jointOrder;     ///< in solver order → joint
     std::vector<ConstraintBodies> jointPlaces;
-    std::vector<std::uint32_t> pinOfLane;     ///< block · 16 + lane → joint, or `none`
-    std::vector<ConstraintBodies> pinPlaces;  ///< likewise → solver places
-    std::vector<std::uint32_t> freeBodies;    ///< awake bodies without a constraint
-    std::vector<std::uint32_t> islandOf;      ///< body → lowest body of its island
+    std::vector<std::uint32_t> revoluteOfLane;     ///< block · 16 + lane → joint, or `none`
+    std::vector<ConstraintBodies> revolutePlaces;  ///< likewise → solver places
+    std::vector<std::uint32_t> freeBodies;         ///< awake bodies without a constraint
+    std::vector<std::uint32_t> islandOf;           ///< body → lowest body of its island
     std::vector<std::uint8_t> colourOfLink;
     std::uint32_t islands = 0;
     std::uint32_t colours = 0;   ///< most in any batch

@@ -1,8 +1,8 @@
 #include "core/joint/joint_row.h"
 
 #include "core/joint/parts.h"
+#include "core/math/angle_lanes.h"
 #include "core/math/finite.h"
-#include "core/math/trig.h"
 
 namespace huestep {
 
@@ -50,7 +50,8 @@ float angleNow(const SolverBody* bodies, const JointRow& row) {
     const SolverBody& a = bodies[readPlace(row.bodyA)];
     const SolverBody& b = bodies[readPlace(row.bodyB)];
     const Rotation turned = relative(Rotation{a.dc, a.ds}, Rotation{b.dc, b.ds});
-    return angleOf(compose(turned, row.angle));
+    const Rotation now = compose(turned, row.angle);
+    return angleLanes<1>(now.c, now.s);
 }
 
 void solveRevolute(SolverBody* bodies, JointRow& row, const JointPass& pass) {

@@ -64,6 +64,23 @@ HUESTEP_INLINE LaneF<W> splat(float x) {
     return x - LaneF<W>{};
 }
 
+/// A mask of numbers that are 0 or not, W of them; of more than one lane they are 0 or −1.
+template <int W>
+HUESTEP_INLINE typename Lanes<W>::Mask loadMask(const std::int32_t* from) {
+    if constexpr (W == 1) {
+        return *from != 0;
+    } else {
+        typedef typename Lanes<W>::Mask Unaligned __attribute__((aligned(4), may_alias));
+        return *reinterpret_cast<const Unaligned*>(from);
+    }
+}
+
+/// The other sign, of zeros too.
+template <int W>
+HUESTEP_INLINE LaneF<W> negated(const LaneF<W>& v) {
+    return -v;
+}
+
 HUESTEP_INLINE float selectLanes(bool mask, float yes, float no) {
     return mask ? yes : no;
 }

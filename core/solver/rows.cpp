@@ -128,15 +128,19 @@ void SoftStep::prepareJoints(const Plan& plan, const SolverWorld& world, Range j
     }
 }
 
-void SoftStep::preparePins(const Plan& plan, const SolverWorld& world, Range blocks) {
-    for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
-        PinBlock& block = m_pins[at / blockLanes];
-        const std::uint32_t joint = plan.pinOfLane[at];
-        if (joint == none) {
-            clearPinLane(block, at % blockLanes);
-        } else {
-            setPinLane(block, at % blockLanes, jointRow(world, joint, plan.pinPlaces[at]));
+void SoftStep::prepareRevolutes(const Plan& plan, const SolverWorld& world, Range blocks) {
+    for (std::uint32_t index = blocks.begin; index < blocks.end; ++index) {
+        RevoluteBlock& block = m_revolutes[index];
+        for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
+            const std::uint32_t at = index * blockLanes + lane;
+            const std::uint32_t joint = plan.revoluteOfLane[at];
+            if (joint == none) {
+                clearRevoluteLane(block, lane);
+            } else {
+                setRevoluteLane(block, lane, jointRow(world, joint, plan.revolutePlaces[at]));
+            }
         }
+        findParts(block);
     }
 }
 
@@ -259,13 +263,11 @@ void SoftStep::storeJoints(const SolverWorld& world, Range joints) const {
     }
 }
 
-void SoftStep::storePins(const Plan& plan, const SolverWorld& world, Range blocks) const {
+void SoftStep::storeRevolutes(const Plan& plan, const SolverWorld& world, Range blocks) const {
     for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
-        const std::uint32_t joint = plan.pinOfLane[at];
+        const std::uint32_t joint = plan.revoluteOfLane[at];
         if (joint == none) continue;
-        const PinBlock& block = m_pins[at / blockLanes];
-        world.jointImpulses[joint].point = {finiteOrZero(block.impulseX[at % blockLanes]),
-                                            finiteOrZero(block.impulseY[at % blockLanes])};
+        world.jointImpulses[joint] = storedImpulses(m_revolutes[at / blockLanes], at % blockLanes);
     }
 }
 

@@ -40,7 +40,7 @@ struct Share {
 /// Whether a colour is worth a barrier: by its size alone, whoever runs it.
 bool isShared(const ColourRun& run) {
     return !isSerial(run.colour) &&
-           run.contactCount + run.pinCount + jointsAsLanes * run.jointCount >= sharedFrom;
+           run.contactCount + run.revoluteCount + jointsAsLanes * run.jointCount >= sharedFrom;
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ bool isShared(const ColourRun& run) {
 /// Constants of all passes over one batch.
 struct SoftStep::Pass {
     const ContactKernels* contacts;
-    const PinKernels* pins;
+    const RevoluteKernels* revolutes;
     float h;
     std::uint32_t substeps;
     ContactPass moving;  // between two bodies that move
@@ -61,7 +61,7 @@ struct SoftStep::Pass {
 SoftStep::Pass SoftStep::makePass(const SolverWorld& world, Simd simd) {
     Pass pass{};
     pass.contacts = &contactKernels(simd);
-    pass.pins = &pinKernels(simd);
+    pass.revolutes = &revoluteKernels(simd);
     pass.h = world.stepSeconds / static_cast<float>(world.substeps);
     pass.substeps = world.substeps;
     const float rate = 1.0f / pass.h;
@@ -80,14 +80,16 @@ SoftStep::Pass SoftStep::makePass(const SolverWorld& world, Simd simd) {
 /// What one pass over all colours does with each kind of constraint; null: nothing.
 struct SoftStep::Sweep {
     void (*joint)(SolverBody* bodies, JointRow& row, const JointPass& pass);
-    PinKernel PinKernels::*pin;
+    RevoluteKernel RevoluteKernels::*revolute;
     ContactKernel ContactKernels::*contact;
 };
 const SoftStep::Sweep SoftStep::warmStartSweep{
     [](SolverBody* bodies, JointRow& row, const JointPass&) { warmStartJoint(bodies, row); },
-    &PinKernels::warmStart, &ContactKernels::warmStart};
-const SoftStep::Sweep SoftStep::solveSweep{solveJoint, &PinKernels::solve, &ContactKernels::solve};
-const SoftStep::Sweep SoftStep::relaxSweep{solveJoint, &PinKernels::solve, &ContactKernels::relax};
+    &RevoluteKernels::warmStart, &ContactKernels::warmStart};
+const SoftStep::Sweep SoftStep::solveSweep{solveJoint, &RevoluteKernels::solve,
+                                           &ContactKernels::solve};
+const SoftStep::Sweep SoftStep::relaxSweep{solveJoint, &RevoluteKernels::solve,
+                                           &ContactKernels::relax};
 const SoftStep::Sweep SoftStep::restituteSweep{nullptr, nullptr, &ContactKernels::restitute};
 
 /// This worker's share of one colour; of a colour that is not shared, all of it on one.
@@ -108,9 +110,11 @@ void SoftStep::sweepColour(const ColourRun& run, const Sweep& sweep, const Joint
         const std::uint32_t last = std::min(blocks.end * blockLanes, count);
         f(blocks.begin, last - blocks.begin * blockLanes);
     };
-    overBlocks(sweep.pin != nullptr ? run.pinCount : 0, [&](std::uint32_t first, std::uint32_t n) {
-        (pass.pins->*sweep.pin)(bodies, m_pins.data() + run.firstPinBlock + first, n, joint);
-    });
+    overBlocks(sweep.revolute != nullptr ? run.revoluteCount : 0,
+               [&](std::uint32_t first, std::uint32_t n) {
+                   (pass.revolutes->*sweep.revolute)(
+                       bodies, m_revolutes.data() + run.firstRevoluteBlock + first, n, joint);
+               });
     const ContactKernels& contacts = serial ? contactKernels(Simd::Scalar) : *pass.contacts;
     overBlocks(run.contactCount, [&](std::uint32_t first, std::uint32_t n) {
         (contacts.*sweep.contact)(bodies, m_blocks.data() + run.firstBlock + first, n,
@@ -180,8 +184,8 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
          [&](Range range, std::uint32_t) { prepareBodies(plan, world, range); });
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { prepareJoints(plan, world, range); });
-    over(batch.firstPinBlock, batch.endPinBlock, blockGrain,
-         [&](Range range, std::uint32_t) { preparePins(plan, world, range); });
+    over(batch.firstRevoluteBlock, batch.endRevoluteBlock, blockGrain,
+         [&](Range range, std::uint32_t) { prepareRevolutes(plan, world, range); });
     const std::uint32_t blocks = batch.endBlock - batch.firstBlock;
     auto features = perBlock<ContactFeatures>(blocks, blockGrain);
     over(batch.firstBlock, batch.endBlock, blockGrain, [&](Range range, std::uint32_t index) {
@@ -208,8 +212,8 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { storeJoints(world, range); });
-    over(batch.firstPinBlock, batch.endPinBlock, blockGrain,
-         [&](Range range, std::uint32_t) { storePins(plan, world, range); });
+    over(batch.firstRevoluteBlock, batch.endRevoluteBlock, blockGrain,
+         [&](Range range, std::uint32_t) { storeRevolutes(plan, world, range); });
     timer.done(Stage::Store);
 }
 
@@ -219,7 +223,7 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
     m_poses.resize(plan.bodyOfPlace.size());
     m_sources.resize(plan.bodyOfPlace.size());
     m_joints.resize(plan.jointOrder.size());
-    m_pins.resize(plan.pinOfLane.size() / blockLanes);
+    m_revolutes.resize(plan.revoluteOfLane.size() / blockLanes);
     m_blocks.resize(plan.contactOfLane.size() / blockLanes);
     m_blockFeatures.resize(m_blocks.size());
     prepareBodies(plan, world, {0, 1});  // the fixed world
@@ -242,14 +246,14 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
             ContactFeatures features;
             prepareBodies(plan, world, {batch.firstPlace, batch.endPlace});
             prepareJoints(plan, world, {batch.firstJoint, batch.endJoint});
-            preparePins(plan, world, {batch.firstPinBlock, batch.endPinBlock});
+            prepareRevolutes(plan, world, {batch.firstRevoluteBlock, batch.endRevoluteBlock});
             prepareBlocks(plan, world, *pass.contacts, {batch.firstBlock, batch.endBlock},
                           features);
             mine.use(features);
             substeps(plan, batch, mine, 0, 1, nullptr);
             settleBlocks(plan, world, *pass.contacts, {batch.firstBlock, batch.endBlock}, found[i]);
             storeJoints(world, {batch.firstJoint, batch.endJoint});
-            storePins(plan, world, {batch.firstPinBlock, batch.endPinBlock});
+            storeRevolutes(plan, world, {batch.firstRevoluteBlock, batch.endRevoluteBlock});
         }
     });
     for (const auto& part : found) hits.insert(hits.end(), part.begin(), part.end());

@@ -12,7 +12,7 @@
 #include "core/contact/contact.h"
 #include "core/graph/plan.h"
 #include "core/joint/joint_row.h"
-#include "core/joint/pin_block.h"
+#include "core/joint/revolute_block.h"
 #include "core/parallel/executor.h"
 #include "core/solver/contact_block.h"
 #include "core/world/event.h"
@@ -120,8 +120,8 @@ class SoftStep {
     void storeJoints(const SolverWorld& world, Range joints) const;
     [[nodiscard]] JointRow jointRow(const SolverWorld& world, std::uint32_t joint,
                                     const ConstraintBodies& places) const;
-    void preparePins(const Plan& plan, const SolverWorld& world, Range blocks);
-    void storePins(const Plan& plan, const SolverWorld& world, Range blocks) const;
+    void prepareRevolutes(const Plan& plan, const SolverWorld& world, Range blocks);
+    void storeRevolutes(const Plan& plan, const SolverWorld& world, Range blocks) const;
 
     // soft_step.cpp
     static Pass makePass(const SolverWorld& world, Simd simd);
@@ -138,7 +138,7 @@ class SoftStep {
     std::vector<ContactBlock> m_blocks;
     std::vector<ContactFeatures> m_blockFeatures;  // by block
     std::vector<JointRow> m_joints;                // in solving order
-    std::vector<PinBlock> m_pins;
+    std::vector<RevoluteBlock> m_revolutes;
 };
 
 }  // namespace huestep

@@ -279,7 +279,6 @@ class Applier {
             action.enabled ? joint.flags | JointInfo::motor : joint.flags & ~JointInfo::motor;
         if (!action.enabled) m_state.jointImpulses[*place].motor = 0.0f;
         m_world.roots.definitionsKnown = false;
-        m_world.accelerators.linksStale = true;  // a pin may have become one, or have ceased to be
         for (const BodyId id : {joint.bodyA, joint.bodyB}) {
             if (const auto body = m_world.findBody(id)) m_world.wake(*body);
         }

@@ -151,7 +151,7 @@ void World::Data::updatePlan(Executor* executor) {
         for (std::uint32_t i = 0; i < acc.shapes.jointBodies.size(); ++i) {
             const ConstraintPlaces& j = acc.shapes.jointBodies[i];
             if (!moves(j.a) && !moves(j.b)) continue;
-            links.push_back({j.a, j.b, i, isPin(state.joints[i], state.jointImpulses[i])});
+            links.push_back({j.a, j.b, i, state.joints[i].kind() == JointKind::Revolute});
         }
         const auto jointLinks = static_cast<std::uint32_t>(links.size());
         acc.inLanes.assign(acc.contacts.size(), 0);

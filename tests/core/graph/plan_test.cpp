@@ -38,7 +38,7 @@ Case randomCase(Random& random) {
     c.jointLinks = c.links.empty() ? 0 : random.below(c.links.size());
     for (std::uint32_t i = 0; i < c.links.size(); ++i) {
         c.links[i].source = i < c.jointLinks ? i : i - c.jointLinks;
-        c.links[i].pin = i < c.jointLinks && !random.once(3);
+        c.links[i].revolute = i < c.jointLinks && !random.once(3);
     }
     return c;
 }
@@ -78,7 +78,7 @@ void expectSound(const Case& c, const Plan& plan) {
             const ColourRun& run = plan.runs[r];
             ASSERT_GT(static_cast<int>(run.colour), lastColour) << "in solving order";
             lastColour = run.colour;
-            inBatch += run.contactCount + run.pinCount + run.jointCount;
+            inBatch += run.contactCount + run.revoluteCount + run.jointCount;
             std::set<BodyPlace> written;
             std::uint32_t lastLink = 0;
             const auto visit = [&](std::uint32_t linkIndex, const ConstraintBodies& places) {
@@ -102,16 +102,16 @@ void expectSound(const Case& c, const Plan& plan) {
             }
             lastLink = 0;
             const std::uint32_t pinLanes =
-                (run.pinCount + blockLanes - 1) / blockLanes * blockLanes;
+                (run.revoluteCount + blockLanes - 1) / blockLanes * blockLanes;
             for (std::uint32_t i = 0; i < pinLanes; ++i) {
-                const std::uint32_t at = run.firstPinBlock * blockLanes + i;
-                const std::uint32_t joint = plan.pinOfLane[at];
-                ASSERT_EQ(joint == none, i >= run.pinCount) << "padding comes last";
+                const std::uint32_t at = run.firstRevoluteBlock * blockLanes + i;
+                const std::uint32_t joint = plan.revoluteOfLane[at];
+                ASSERT_EQ(joint == none, i >= run.revoluteCount) << "padding comes last";
                 if (joint == none) continue;
                 ++jointSeen[joint];
-                ASSERT_TRUE(c.links[joint].pin);
+                ASSERT_TRUE(c.links[joint].revolute);
                 ASSERT_FALSE(isSerial(run.colour)) << "the overflow is solved in key order";
-                visit(joint, plan.pinPlaces[at]);
+                visit(joint, plan.revolutePlaces[at]);
             }
             const std::uint32_t lanes =
                 (run.contactCount + blockLanes - 1) / blockLanes * blockLanes;
@@ -182,7 +182,7 @@ TEST(Plan, KeepsWhatOverflowsAtAHubInKeyOrderOutOfTheLanes) {
             if (!isSerial(run.colour)) continue;
             ++serial;
             EXPECT_EQ(run.jointCount, 16u);
-            EXPECT_EQ(run.pinCount, 0u);
+            EXPECT_EQ(run.revoluteCount, 0u);
         }
         EXPECT_EQ(serial, 2u);
     }

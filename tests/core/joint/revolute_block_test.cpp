@@ -1,7 +1,8 @@
-// Pins in lanes: the bits of the one by one form, at every width.
+// Revolute joints in lanes: the bits of the one by one form, at every width.
 
-#include "core/joint/pin_block.h"
+#include "core/joint/revolute_block.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,7 +16,7 @@ namespace {
 struct Field {
     std::vector<SolverBody> bodies;
     std::vector<JointRow> rows;
-    std::vector<PinBlock> blocks;
+    std::vector<RevoluteBlock> blocks;
 };
 
 /// A number, often a zero of either sign, sometimes one that no state holds.
@@ -30,6 +31,7 @@ float anyFloat(Random& random, double most, bool wild) {
 
 Field randomField(Random& random, std::uint32_t count, bool wild) {
     Field f;
+    const bool pins = random.once(3);
     const auto number = [&](double most) { return anyFloat(random, most, wild); };
     const auto body = [&] {
         SolverBody b;
@@ -48,9 +50,9 @@ Field randomField(Random& random, std::uint32_t count, bool wild) {
     const BodyPlace kinematic = body();
     f.blocks.resize(blocksOf(count));
     for (std::uint32_t i = 0; i < f.blocks.size() * blockLanes; ++i) {
-        PinBlock& block = f.blocks[i / blockLanes];
+        RevoluteBlock& block = f.blocks[i / blockLanes];
         if (i >= count) {
-            clearPinLane(block, i % blockLanes);
+            clearRevoluteLane(block, i % blockLanes);
             continue;
         }
         JointRow row{};
@@ -69,9 +71,31 @@ Field randomField(Random& random, std::uint32_t count, bool wild) {
         row.anchorB = {number(2.0), number(2.0)};
         row.centers = {number(2.0), number(2.0)};
         row.impulses.point = {number(9.0), number(9.0)};
+        // Every third field is of pins alone: their blocks skip the other parts.
+        if (!pins) {
+            const auto maybe = [&](std::uint32_t part) {
+                if (random.once(2)) row.flags |= part;
+            };
+            maybe(JointInfo::spring);
+            maybe(JointInfo::motor);
+            maybe(JointInfo::limit);
+            const double angle = random.between(-3.1, 3.1);
+            row.angle = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+            row.spring = {random.betweenF(0.0, 50.0), random.betweenF(0.0, 1.0),
+                          random.betweenF(0.0, 1.0)};
+            row.motorSpeed = number(5.0);
+            row.motorMaxEffort = random.betweenF(0.0, 100.0);
+            row.lower = random.betweenF(-2.0, 0.0);
+            row.upper = random.betweenF(0.0, 2.0);
+            row.impulses.spring = number(1.0);
+            row.impulses.motor = number(1.0);
+            row.impulses.lower = std::max(number(1.0), 0.0f);
+            row.impulses.upper = std::max(number(1.0), 0.0f);
+        }
         f.rows.push_back(row);
-        setPinLane(block, i % blockLanes, row);
+        setRevoluteLane(block, i % blockLanes, row);
     }
+    for (RevoluteBlock& block : f.blocks) findParts(block);
     return f;
 }
 
@@ -92,27 +116,36 @@ void expectSame(const Field& wide, const Field& single, const std::string& what)
             << what << ": body " << i;
     }
     for (std::size_t i = 0; i < single.rows.size(); ++i) {
-        const PinBlock& block = wide.blocks[i / blockLanes];
-        const Vec2 impulse{block.impulseX[i % blockLanes], block.impulseY[i % blockLanes]};
-        EXPECT_TRUE(same(&impulse, &single.rows[i].impulses.point, 2)) << what << ": joint " << i;
+        const RevoluteBlock& block = wide.blocks[i / blockLanes];
+        const std::size_t lane = i % blockLanes;
+        const JointImpulses impulses{{block.impulseX[lane], block.impulseY[lane]},
+                                     block.springImpulse[lane],
+                                     block.motorImpulse[lane],
+                                     block.lowerImpulse[lane],
+                                     block.upperImpulse[lane]};
+        EXPECT_TRUE(same(&impulses, &single.rows[i].impulses, sizeof impulses / 4))
+            << what << ": joint " << i;
     }
 }
 
-TEST(PinLanes, GiveTheBitsOfJointsOneByOneAtEveryWidth) {
+TEST(RevoluteLanes, GiveTheBitsOfJointsOneByOneAtEveryWidth) {
     Random random(2024);
     SCOPED_TRACE(random.trace());
     for (int trial = 0; trial < 300 && !HasFailure(); ++trial) {
         const Field start = randomField(random, 1 + random.below(40), trial % 3 == 0);
         JointPass biased;
+        biased.h = 1.0f / 240.0f;
+        biased.inverseH = 240.0f;
         biased.soft = {random.betweenF(1.0, 100.0), random.betweenF(0.1, 1.0),
                        random.betweenF(0.0, 0.5)};
-        const JointPass relaxed;
+        JointPass relaxed = biased;
+        relaxed.soft = {};
         Field single = start;
         for (const JointRow& row : single.rows) warmStartJoint(single.bodies.data(), row);
         for (JointRow& row : single.rows) solveJoint(single.bodies.data(), row, biased);
         for (JointRow& row : single.rows) solveJoint(single.bodies.data(), row, relaxed);
         for (const Simd simd : availableSimd()) {
-            const PinKernels& kernels = pinKernels(simd);
+            const RevoluteKernels& kernels = revoluteKernels(simd);
             Field wide = start;
             const auto count = static_cast<std::uint32_t>(wide.rows.size());
             kernels.warmStart(wide.bodies.data(), wide.blocks.data(), count, biased);
@@ -121,24 +154,6 @@ TEST(PinLanes, GiveTheBitsOfJointsOneByOneAtEveryWidth) {
             expectSame(wide, single, std::string(nameOf(simd)));
         }
     }
-}
-
-TEST(PinLanes, TakeOnlyJointsWhoseOtherPartsAreStill) {
-    JointInfo info{};
-    info.flags = static_cast<std::uint32_t>(JointKind::Revolute) | JointInfo::hasMotor;
-    JointImpulses still{};
-    still.point = {3.0f, 4.0f};
-    EXPECT_TRUE(isPin(info, still));
-    for (const std::uint32_t part : {JointInfo::spring, JointInfo::limit, JointInfo::motor}) {
-        JointInfo busy = info;
-        busy.flags |= part;
-        EXPECT_FALSE(isPin(busy, still));
-    }
-    JointImpulses left = still;
-    left.motor = 1.0f;
-    EXPECT_FALSE(isPin(info, left)) << "its warm start would be lost";
-    info.flags = static_cast<std::uint32_t>(JointKind::Distance);
-    EXPECT_FALSE(isPin(info, still));
 }
 
 }  // namespace
