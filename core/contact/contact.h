@@ -19,6 +19,7 @@ struct alignas(64) Contact {
     std::uint32_t bodyB = 0;
     std::uint32_t placeA = 0;  ///< of the shapes, the one with the lower id first
     std::uint32_t placeB = 0;
+    float inverseMassA = 0, inverseMassB = 0;  ///< 1/kg
     float turn = 0;  ///< body A's rotation when the manifold was made, see `turnOf`
     std::uint16_t feature[2]{};
     std::uint8_t pointCount = 0;  ///< 0: not touching any more

@@ -21,8 +21,7 @@ struct ContactPointFields {
 
 template <class T>
 struct ContactFields {
-    T inverseMassA, inverseInertiaA;  ///< 1/kg, 1/(kg·m²)
-    T inverseMassB, inverseInertiaB;
+    T inverseInertiaA, inverseInertiaB;  ///< 1/(kg·m²)
     T normalX, normalY;  ///< unit, world axes, from A to B, fixed while the manifold is kept
     T cosineA, sineA;    ///< of the bodies' rotations when the manifold was made
     T cosineB, sineB;

@@ -57,7 +57,7 @@ void setManifold(Contact& contact, const Pose& made, const Manifold& manifold) {
     // A single point is a vertex: it slides over the other shape as that turns.
     const float slack = row.slack < 0.0f ? -row.slack : row.slack;
     row.slack = manifold.count < 2 ? -slack : slack;
-    const float m = row.inverseMassA + row.inverseMassB;
+    const float m = contact.inverseMassA + contact.inverseMassB;
     for (std::size_t i = 0; i < 2; ++i) {
         ContactPointFields<float>& p = contact.points[i];
         p = {};

@@ -16,8 +16,7 @@ struct alignas(64) RevoluteBlock {
     using Row = float[blockLanes];
     BodyPlace bodyA[blockLanes];
     BodyPlace bodyB[blockLanes];
-    Row inverseMassA, inverseInertiaA;  ///< 1/kg, 1/(kg·m²)
-    Row inverseMassB, inverseInertiaB;
+    Row inverseInertiaA, inverseInertiaB;  ///< 1/(kg·m²)
     Row anchorAx, anchorAy;  ///< m, from A's centre, world axes, at the start of the step
     Row anchorBx, anchorBy;
     Row centersX, centersY;  ///< m, cB − cA at the start

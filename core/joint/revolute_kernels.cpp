@@ -136,7 +136,7 @@ HUESTEP_INLINE void solveLanes(SolverBody* bodies, RevoluteBlock& block, int lan
         ((moveB.dy - moveA.dy) + loadLanes<W>(block.centersY + lane)) + (r.by - r.ay);
     const LaneF<W>& iA = pair.inverseInertiaA;
     const LaneF<W>& iB = pair.inverseInertiaB;
-    const LaneF<W> m = pair.inverseMassA + pair.inverseMassB;
+    const LaneF<W> m = pair.a.inverseMass + pair.b.inverseMass;
     const LaneF<W> k11 = (m + iA * r.ay * r.ay) + iB * r.by * r.by;
     const LaneF<W> k12 = -(iA * r.ax * r.ay) - iB * r.bx * r.by;
     const LaneF<W> k22 = (m + iA * r.ax * r.ax) + iB * r.bx * r.bx;
@@ -180,9 +180,7 @@ constexpr RevoluteKernels byWidth[] = {HUESTEP_EACH_WIDTH(HUESTEP_ENTRY)};
 void setRevoluteLane(RevoluteBlock& block, std::uint32_t lane, const JointRow& row) {
     block.bodyA[lane] = row.bodyA;
     block.bodyB[lane] = row.bodyB;
-    block.inverseMassA[lane] = row.mA;
     block.inverseInertiaA[lane] = row.iA;
-    block.inverseMassB[lane] = row.mB;
     block.inverseInertiaB[lane] = row.iB;
     block.anchorAx[lane] = row.anchorA.x;
     block.anchorAy[lane] = row.anchorA.y;

@@ -9,6 +9,7 @@ namespace huestep {
 template <int W>
 struct VelocityLanes {
     LaneF<W> vx, vy, w;
+    LaneF<W> inverseMass;  ///< never changes: it fills the fourth place of a gather
 };
 
 template <int W>
@@ -120,8 +121,7 @@ HUESTEP_INLINE void gatherFour(const Record* records, const BodyPlace* place, in
 template <int W>
 HUESTEP_INLINE VelocityLanes<W> gatherVelocities(const SolverBody* bodies, const BodyPlace* place) {
     VelocityLanes<W> v;
-    LaneF<W> unused;
-    gatherFour<W>(bodies, place, 0, v.vx, v.vy, v.w, unused);
+    gatherFour<W>(bodies, place, 0, v.vx, v.vy, v.w, v.inverseMass);
     return v;
 }
 
@@ -145,12 +145,11 @@ HUESTEP_INLINE float* velocityOf(SolverBody* bodies, SolverBody& trash, BodyPlac
 }
 
 HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
-                            const F4& vx, const F4& vy, const F4& w) {
-    const F4 zero{};
+                            const F4& vx, const F4& vy, const F4& w, const F4& mass) {
     const F4 xy0 = __builtin_shufflevector(vx, vy, 0, 4, 1, 5);
     const F4 xy1 = __builtin_shufflevector(vx, vy, 2, 6, 3, 7);
-    const F4 wz0 = __builtin_shufflevector(w, zero, 0, 4, 1, 5);
-    const F4 wz1 = __builtin_shufflevector(w, zero, 2, 6, 3, 7);
+    const F4 wz0 = __builtin_shufflevector(w, mass, 0, 4, 1, 5);
+    const F4 wz1 = __builtin_shufflevector(w, mass, 2, 6, 3, 7);
     storeLanes<4>(velocityOf(bodies, trash, place[0]),
                   __builtin_shufflevector(xy0, wz0, 0, 1, 4, 5));
     storeLanes<4>(velocityOf(bodies, trash, place[1]),
@@ -169,12 +168,11 @@ HUESTEP_INLINE F4 highHalf(const F8& v) {
 }
 
 HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
-                            const F8& vx, const F8& vy, const F8& w) {
-    const F8 zero{};
+                            const F8& vx, const F8& vy, const F8& w, const F8& mass) {
     const F8 xy0 = __builtin_shufflevector(vx, vy, 0, 8, 1, 9, 4, 12, 5, 13);
     const F8 xy1 = __builtin_shufflevector(vx, vy, 2, 10, 3, 11, 6, 14, 7, 15);
-    const F8 wz0 = __builtin_shufflevector(w, zero, 0, 8, 1, 9, 4, 12, 5, 13);
-    const F8 wz1 = __builtin_shufflevector(w, zero, 2, 10, 3, 11, 6, 14, 7, 15);
+    const F8 wz0 = __builtin_shufflevector(w, mass, 0, 8, 1, 9, 4, 12, 5, 13);
+    const F8 wz1 = __builtin_shufflevector(w, mass, 2, 10, 3, 11, 6, 14, 7, 15);
     const F8 r0 = __builtin_shufflevector(xy0, wz0, 0, 1, 8, 9, 4, 5, 12, 13);
     const F8 r1 = __builtin_shufflevector(xy0, wz0, 2, 3, 10, 11, 6, 7, 14, 15);
     const F8 r2 = __builtin_shufflevector(xy1, wz1, 0, 1, 8, 9, 4, 5, 12, 13);
@@ -190,15 +188,15 @@ HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPla
 }
 
 HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
-                            const F16& vx, const F16& vy, const F16& w) {
+                            const F16& vx, const F16& vy, const F16& w, const F16& mass) {
     const auto low = [](const F16& v) __attribute__((always_inline)) {
         return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
     };
     const auto high = [](const F16& v) __attribute__((always_inline)) {
         return __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
     };
-    scatter(bodies, trash, place, low(vx), low(vy), low(w));
-    scatter(bodies, trash, place + 8, high(vx), high(vy), high(w));
+    scatter(bodies, trash, place, low(vx), low(vy), low(w), low(mass));
+    scatter(bodies, trash, place + 8, high(vx), high(vy), high(w), high(mass));
 }
 
 template <int W>
@@ -210,7 +208,7 @@ HUESTEP_INLINE void scatterVelocities(SolverBody* bodies, SolverBody& trash, con
         to[1] = v.vy;
         to[2] = v.w;
     } else {
-        scatter(bodies, trash, place, v.vx, v.vy, v.w);
+        scatter(bodies, trash, place, v.vx, v.vy, v.w, v.inverseMass);
     }
 }
 
@@ -218,15 +216,13 @@ HUESTEP_INLINE void scatterVelocities(SolverBody* bodies, SolverBody& trash, con
 template <int W>
 struct PairLanes {
     VelocityLanes<W> a, b;
-    LaneF<W> inverseMassA, inverseInertiaA, inverseMassB, inverseInertiaB;
+    LaneF<W> inverseInertiaA, inverseInertiaB;
 
     template <class Block>
     HUESTEP_INLINE PairLanes(const SolverBody* bodies, const Block& block, int lane)
         : a(gatherVelocities<W>(bodies, block.bodyA + lane)),
           b(gatherVelocities<W>(bodies, block.bodyB + lane)),
-          inverseMassA(loadLanes<W>(block.inverseMassA + lane)),
           inverseInertiaA(loadLanes<W>(block.inverseInertiaA + lane)),
-          inverseMassB(loadLanes<W>(block.inverseMassB + lane)),
           inverseInertiaB(loadLanes<W>(block.inverseInertiaB + lane)) {}
 
     template <class Block>
@@ -261,11 +257,11 @@ HUESTEP_INLINE void relativeVelocity(const PairLanes<W>& pair, const Anchors<W>&
 template <int W>
 HUESTEP_INLINE void applyImpulse(PairLanes<W>& pair, const Anchors<W>& r, const LaneF<W>& px,
                                  const LaneF<W>& py) {
-    pair.a.vx = pair.a.vx - pair.inverseMassA * px;
-    pair.a.vy = pair.a.vy - pair.inverseMassA * py;
+    pair.a.vx = pair.a.vx - pair.a.inverseMass * px;
+    pair.a.vy = pair.a.vy - pair.a.inverseMass * py;
     pair.a.w = pair.a.w - pair.inverseInertiaA * (r.ax * py - r.ay * px);
-    pair.b.vx = pair.b.vx + pair.inverseMassB * px;
-    pair.b.vy = pair.b.vy + pair.inverseMassB * py;
+    pair.b.vx = pair.b.vx + pair.b.inverseMass * px;
+    pair.b.vy = pair.b.vy + pair.b.inverseMass * py;
     pair.b.w = pair.b.w + pair.inverseInertiaB * (r.bx * py - r.by * px);
 }
 

@@ -16,9 +16,9 @@ namespace huestep {
 /// Positions are deltas from the step's start, so that precision does not fade far from the origin.
 struct alignas(32) SolverBody {
     float vx = 0, vy = 0, w = 0;  ///< m/s, rad/s
-    float unused = 0;
-    float dx = 0, dy = 0;  ///< m, moved since the start of the step
-    float dc = 1, ds = 0;  ///< turned since the start of the step
+    float inverseMass = 0;        ///< 1/kg; 0: never moved
+    float dx = 0, dy = 0;         ///< m, moved since the start of the step
+    float dc = 1, ds = 0;         ///< turned since the start of the step
 };
 
 /// Where a body was at the start of the step, by the same places: m, and its rotation.
@@ -45,7 +45,7 @@ using LaneRow = float[blockLanes];
 
 struct alignas(64) ContactPointRows : ContactPointFields<LaneRow> {
     LaneRow separation;        ///< m, at the start of the step, less n·(rB − rA)
-    LaneRow maxNormalImpulse;  ///< over the step: whether the point ever pushed
+    LaneRow maxNormalImpulse;  ///< over the step: whether the point ever pushed; where it `mayHit`
     LaneRow approach;          ///< m/s, relative normal velocity at the start of the step
 };
 
@@ -60,6 +60,7 @@ struct alignas(64) ContactBlock : ContactFields<LaneRow> {
     std::int32_t boundsB[blockLanes];
     std::int32_t kept[blockLanes];  ///< −1: the manifold is that of the last step; 0: it is not
     std::int32_t hit[blockLanes];   ///< −1: the shapes met hard in this step; 0: they did not
+    std::int32_t mayHit;            ///< whether any lane approaches fast enough to hit or bounce
 };
 
 /// Soft constraint coefficients of a damped oscillator (frequency f, damping ratio ζ) at step h:

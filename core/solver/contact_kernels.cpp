@@ -80,6 +80,7 @@ HUESTEP_INLINE void refreshLanes(const SolverBody* bodies, const SolverPose* pos
     LaneF<W> cA, sA, cB, sB;
     turnedSince<W>(loadLanes<W>(block.cosineA + lane), loadLanes<W>(block.sineA + lane), a, cA, sA);
     turnedSince<W>(loadLanes<W>(block.cosineB + lane), loadLanes<W>(block.sineB + lane), b, cB, sB);
+    auto fast = splat<W>(0.0f) > splat<W>(0.0f);
     for (ContactPointRows& p : block.points) {
         const Anchors<W> r = anchorsOf<W>(p, lane);
         const LaneF<W> x = (b.x - a.x) + ((cB * r.bx - sB * r.by) - (cA * r.ax - sA * r.ay));
@@ -89,9 +90,12 @@ HUESTEP_INLINE void refreshLanes(const SolverBody* bodies, const SolverPose* pos
         storeLanes<W>(p.separation + lane, (made + (pair.nx * x + pair.ny * y)) - met);
         LaneF<W> vx, vy;
         relativeVelocity<W>(pair, r, vx, vy);
-        storeLanes<W>(p.approach + lane, vx * pair.nx + vy * pair.ny);
+        const LaneF<W> approach = vx * pair.nx + vy * pair.ny;
+        storeLanes<W>(p.approach + lane, approach);
         storeLanes<W>(p.maxNormalImpulse + lane, splat<W>(0.0f));
+        fast = either(fast, approach < splat<W>(-hitSpeed));
     }
+    storeMask<W>(block.hit + lane, fast);
 }
 
 template <int W>
@@ -155,8 +159,11 @@ HUESTEP_INLINE void solveNormals(Pair<W>& pair, const DeltaLanes<W>& a, const De
         const LaneF<W> sum = maxLanes(old + impulse, zero);
         impulse = sum - old;
         storeLanes<W>(p.normalImpulse + lane, sum);
-        storeLanes<W>(p.maxNormalImpulse + lane,
-                      maxLanes(loadLanes<W>(p.maxNormalImpulse + lane), sum));
+        // Half the writes of a pass, and of no use where nothing comes fast.
+        if (block.mayHit != 0) {
+            storeLanes<W>(p.maxNormalImpulse + lane,
+                          maxLanes(loadLanes<W>(p.maxNormalImpulse + lane), sum));
+        }
         applyImpulse<W>(pair, r, impulse * pair.nx, impulse * pair.ny);
     }
 }
@@ -226,6 +233,8 @@ template <int W>
 HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int lane,
                                    const ContactPass&) {
     constexpr float threshold = 1.0f;  // m/s
+    static_assert(threshold >= hitSpeed, "blocks that bounce may hit");
+    if (block.mayHit == 0) return;
     Pair<W> pair(bodies, block, lane);
     const LaneF<W> zero = splat<W>(0.0f);
     const LaneF<W> e = loadLanes<W>(block.restitution + lane);
@@ -264,11 +273,14 @@ HUESTEP_INLINE LaneF<W> settled(LaneRow& field, int lane) {
 template <int W>
 HUESTEP_INLINE void settleLanes(ContactBlock& block, int lane) {
     settled<W>(block.rollingImpulse, lane);
-    const LaneF<W> zero = splat<W>(0.0f);
-    auto hit = zero > zero;
     for (ContactPointRows& p : block.points) {
         settled<W>(p.normalImpulse, lane);
         settled<W>(p.tangentImpulse, lane);
+    }
+    if (block.mayHit == 0) return;
+    const LaneF<W> zero = splat<W>(0.0f);
+    auto hit = zero > zero;
+    for (const ContactPointRows& p : block.points) {
         hit = either(hit, both(loadLanes<W>(p.approach + lane) < splat<W>(-hitSpeed),
                                loadLanes<W>(p.maxNormalImpulse + lane) > zero));
     }
@@ -296,7 +308,7 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
             for (int lane = 0; lane < blockLanes; lane += W) {                \
                 settleLanes<W>(blocks[i], lane);                              \
             }                                                                 \
-            hits = hits || anySet(blocks[i].hit);                             \
+            hits = hits || (blocks[i].mayHit != 0 && anySet(blocks[i].hit));  \
         }                                                                     \
         return hits;                                                          \
     }
@@ -307,6 +319,7 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
             for (int lane = 0; lane < blockLanes; lane += W) {                    \
                 refreshLanes<W>(bodies, poses, blocks[i], lane);                  \
             }                                                                     \
+            blocks[i].mayHit = anySet(blocks[i].hit) ? -1 : 0;                    \
         }                                                                         \
     }
 #define HUESTEP_KERNELS(W, attributes)                                \

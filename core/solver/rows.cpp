@@ -80,6 +80,7 @@ void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range p
             moving.vy = motion.velocity.y;
             moving.w = motion.angularVelocity;
         }
+        moving.inverseMass = info.inverseMass;
         m_bodies[place] = moving;
         m_poses[place] = {motion.position.x, motion.position.y, motion.rotation.c,
                           motion.rotation.s};

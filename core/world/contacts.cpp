@@ -30,9 +30,9 @@ Contact contactOf(const ShapePair& pair, const Shapes& known, const WorldState& 
     c.bodyB = known.proxies[pair.b].body;
     c.row.slack = minOf(recycleMost, recyclePart * minOf(known.sizes[pair.a], known.sizes[pair.b]));
     ContactFields<float>& row = c.row;
-    row.inverseMassA = state.bodies[c.bodyA].inverseMass;
+    c.inverseMassA = state.bodies[c.bodyA].inverseMass;
     row.inverseInertiaA = state.bodies[c.bodyA].inverseInertia;
-    row.inverseMassB = state.bodies[c.bodyB].inverseMass;
+    c.inverseMassB = state.bodies[c.bodyB].inverseMass;
     row.inverseInertiaB = state.bodies[c.bodyB].inverseInertia;
     row.reach = maxOf(known.reach[c.bodyA], known.reach[c.bodyB]);
     row.roundness = maxOf(a.radius, b.radius);

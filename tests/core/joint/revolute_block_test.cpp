@@ -62,7 +62,7 @@ Field randomField(Random& random, std::uint32_t count, bool wild) {
                 return;
             }
             place = body();
-            m = random.betweenF(0.01, 3.0);
+            m = f.bodies.back().inverseMass = random.betweenF(0.01, 3.0);
             inertia = random.once(5) ? 0.0f : random.betweenF(0.01, 30.0);
         };
         end(row.bodyA, row.mA, row.iA, true);

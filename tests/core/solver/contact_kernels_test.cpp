@@ -51,6 +51,7 @@ Rows randomRows(Random& random) {
         std::memset(static_cast<void*>(&block), 0, sizeof block);
         std::fill(block.bodyA, block.bodyA + blockLanes, fixedWorld);
         std::fill(block.bodyB, block.bodyB + blockLanes, fixedWorld);
+        block.mayHit = -1;
     }
     for (std::uint32_t i = 0; i < rows.count; ++i) {
         ContactBlock& block = rows.blocks[i / blockLanes];
@@ -63,9 +64,10 @@ Rows randomRows(Random& random) {
             (random.once(2) ? block.bodyA : block.bodyB)[lane] =
                 random.once(2) ? fixedWorld : ~kinematic;
         const auto inverse = [&](BodyPlace p) { return p < 0 ? 0.0f : random.betweenF(0.1, 4.0); };
-        block.inverseMassA[lane] = inverse(block.bodyA[lane]);
+        for (const BodyPlace body : {block.bodyA[lane], block.bodyB[lane]}) {
+            if (body >= 0) rows.bodies[static_cast<std::size_t>(body)].inverseMass = inverse(body);
+        }
         block.inverseInertiaA[lane] = inverse(block.bodyA[lane]);
-        block.inverseMassB[lane] = inverse(block.bodyB[lane]);
         block.inverseInertiaB[lane] = random.once(4) ? 0.0f : inverse(block.bodyB[lane]);
         const double angle = random.between(-3.1, 3.1);
         block.normalX[lane] = static_cast<float>(std::cos(angle));
@@ -434,8 +436,9 @@ TEST(ContactKernels, OneRowStopsTwoDiscsAsAnInelasticCollisionDoesAndRestitution
     rows.bodies[2].vx = -1.0f;  // 0.5 kg
     block.bodyA[0] = 1;
     block.bodyB[0] = 2;
-    block.inverseMassA[0] = 0.5f;
-    block.inverseMassB[0] = 2.0f;
+    rows.bodies[1].inverseMass = 0.5f;
+    rows.bodies[2].inverseMass = 2.0f;
+    block.mayHit = -1;
     block.normalX[0] = 1.0f;
     block.restitution[0] = 0.5f;
     block.points[0].normalMass[0] = 1.0f / 2.5f;
