@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/math/lanes.h"
 #include "core/math/vec.h"
 #include "core/state/records.h"
 
@@ -85,6 +86,30 @@ BoundsT<Real> boundsOf(const HullT<Real>& hull, const PoseT<Real>& pose) {
         high = maxOf(high, v);
     }
     return grown(BoundsT<Real>{low, high}, hull.radius);
+}
+
+/// The same, two vertices at a time in lanes. Rounding is monotone, so the position may be added to
+/// the least and the greatest alone: the numbers are those of the general form.
+inline Bounds boundsOf(const Hull& hull, const Pose& pose) {
+    const LaneF<4> c = splat<4>(pose.q.c);
+    const LaneF<4> s{-pose.q.s, pose.q.s, -pose.q.s, pose.q.s};
+    const auto rotated = [&](int i) {
+        LaneF<4> v = loadLanes<4>(&hull.vertices[static_cast<std::size_t>(i)].x);
+        if (i + 1 == hull.count) v = __builtin_shufflevector(v, v, 0, 1, 0, 1);
+        return c * v + s * __builtin_shufflevector(v, v, 1, 0, 3, 2);
+    };
+    LaneF<4> low = rotated(0);
+    LaneF<4> high = low;
+    for (int i = 2; i < hull.count; i += 2) {
+        const LaneF<4> v = rotated(i);
+        low = minLanes(low, v);
+        high = maxLanes(high, v);
+    }
+    low = minLanes(low, __builtin_shufflevector(low, low, 2, 3, 0, 1));
+    high = maxLanes(high, __builtin_shufflevector(high, high, 2, 3, 0, 1));
+    const Vec2 lowest{pose.p.x + low[0], pose.p.y + low[1]};
+    const Vec2 highest{pose.p.x + high[0], pose.p.y + high[1]};
+    return grown(Bounds{lowest, highest}, hull.radius);
 }
 
 }  // namespace huestep

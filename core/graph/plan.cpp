@@ -202,9 +202,9 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
             lanes.sourceOf[at] = source;
             lanes.places[at] = places[i];
         }
-        if (kind != ContactLane) continue;
+        std::vector<std::uint8_t>& touched = kind == ContactLane ? plan.hasContact : plan.hasJoint;
         for (const BodyPlace place : {places[i].a, places[i].b}) {
-            plan.hasContact[static_cast<std::size_t>(readPlace(place))] = 1;
+            touched[static_cast<std::size_t>(readPlace(place))] = 1;
         }
     }
 }
@@ -236,6 +236,7 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     builder.placeOf.assign(bodyCount, fixedWorld);
     plan.bodyOfPlace.assign(1, none);
     plan.hasContact.assign(1, 0);
+    plan.hasJoint.assign(1, 0);
 
     // Own bodies of every batch, by id: one walk over the awake bodies into buckets.
     std::vector<std::vector<std::uint32_t>> own(plan.batches.size());
@@ -251,6 +252,7 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
         }
         plan.batches[batch].endPlace = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
         plan.hasContact.resize(plan.bodyOfPlace.size(), 0);
+        plan.hasJoint.resize(plan.bodyOfPlace.size(), 0);
         builder.colourBatch(batch);
     }
 }

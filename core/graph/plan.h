@@ -51,6 +51,7 @@ struct Plan {
 
     std::vector<std::uint32_t> bodyOfPlace;  ///< solver place → body; place 0: none
     std::vector<std::uint8_t> hasContact;    ///< solver place → whether a contact row touches it
+    std::vector<std::uint8_t> hasJoint;      ///< solver place → whether a joint row touches it
     std::vector<Batch> batches;
     std::vector<ColourRun> runs;
     std::vector<std::uint32_t> contactOfLane;  ///< block · 16 + lane → contact, or `none`

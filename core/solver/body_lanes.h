@@ -220,16 +220,26 @@ struct PairLanes {
 
     template <class Block>
     HUESTEP_INLINE PairLanes(const SolverBody* bodies, const Block& block, int lane)
-        : a(gatherVelocities<W>(bodies, block.bodyA + lane)),
-          b(gatherVelocities<W>(bodies, block.bodyB + lane)),
+        : PairLanes(bodies, block, block.bodyA, block.bodyB, lane) {}
+
+    /// With other places than the block's own.
+    template <class Block>
+    HUESTEP_INLINE PairLanes(const SolverBody* bodies, const Block& block, const BodyPlace* placeA,
+                             const BodyPlace* placeB, int lane)
+        : a(gatherVelocities<W>(bodies, placeA + lane)),
+          b(gatherVelocities<W>(bodies, placeB + lane)),
           inverseInertiaA(loadLanes<W>(block.inverseInertiaA + lane)),
           inverseInertiaB(loadLanes<W>(block.inverseInertiaB + lane)) {}
 
     template <class Block>
     HUESTEP_INLINE void store(SolverBody* bodies, const Block& block, int lane) const {
+        store(bodies, block.bodyA, block.bodyB, lane);
+    }
+    HUESTEP_INLINE void store(SolverBody* bodies, const BodyPlace* placeA, const BodyPlace* placeB,
+                              int lane) const {
         SolverBody trash;
-        scatterVelocities<W>(bodies, trash, block.bodyA + lane, a);
-        scatterVelocities<W>(bodies, trash, block.bodyB + lane, b);
+        scatterVelocities<W>(bodies, trash, placeA + lane, a);
+        scatterVelocities<W>(bodies, trash, placeB + lane, b);
     }
 };
 

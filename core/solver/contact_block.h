@@ -53,6 +53,11 @@ struct alignas(64) ContactBlock : ContactFields<LaneRow> {
     BodyPlace bodyA[blockLanes];
     BodyPlace bodyB[blockLanes];
     ContactPointRows points[2];
+    // As `bodyA` and `bodyB` for the warm start of later substeps: bodies that carry their impulses
+    // over by themselves are read and not written.
+    BodyPlace warmA[blockLanes];
+    BodyPlace warmB[blockLanes];
+    std::int32_t anyWarm;  ///< whether a lane has a body that does not
     // Of the world, for what is not solved: places of bodies and shapes.
     std::int32_t motionA[blockLanes];
     std::int32_t motionB[blockLanes];
@@ -119,8 +124,9 @@ struct ContactKernels {
     ContactCheck check = nullptr;
     ContactRefresh refresh = nullptr;
     ContactKernel warmStart = nullptr;
-    ContactKernel solve = nullptr;  ///< normals with bias
-    ContactKernel relax = nullptr;  ///< normals without bias, then friction and rolling
+    ContactKernel warmStartAgain = nullptr;  ///< of bodies that do not carry their impulses over
+    ContactKernel solve = nullptr;           ///< normals with bias
+    ContactKernel relax = nullptr;           ///< normals without bias, then friction and rolling
     ContactKernel restitute = nullptr;
     ContactSettle settle = nullptr;
 };

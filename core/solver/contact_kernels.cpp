@@ -99,23 +99,38 @@ HUESTEP_INLINE void refreshLanes(const SolverBody* bodies, const SolverPose* pos
 }
 
 template <int W>
-HUESTEP_INLINE void warmStartLanes(SolverBody* bodies, ContactBlock& block, int lane,
-                                   const ContactPass& pass) {
-    Pair<W> pair(bodies, block, lane);
+HUESTEP_INLINE void applyWarmImpulses(SolverBody* bodies, ContactBlock& block,
+                                      const BodyPlace* placeA, const BodyPlace* placeB, int lane,
+                                      const ContactPass& pass) {
+    PairLanes<W> pair(bodies, block, placeA, placeB, lane);
+    const LaneF<W> nx = loadLanes<W>(block.normalX + lane);
+    const LaneF<W> ny = loadLanes<W>(block.normalY + lane);
     for (const ContactPointRows& p : block.points) {
         const Anchors<W> r = anchorsOf<W>(p, lane);
         const LaneF<W> normal = loadLanes<W>(p.normalImpulse + lane);
         const LaneF<W> tangent = loadLanes<W>(p.tangentImpulse + lane);
         // The tangent is the normal turned right: (ny, −nx).
-        applyImpulse<W>(pair, r, normal * pair.nx + tangent * pair.ny,
-                        normal * pair.ny - tangent * pair.nx);
+        applyImpulse<W>(pair, r, normal * nx + tangent * ny, normal * ny - tangent * nx);
     }
     if (pass.features.rolling) {
         const LaneF<W> rolling = loadLanes<W>(block.rollingImpulse + lane);
         pair.a.w = pair.a.w - pair.inverseInertiaA * rolling;
         pair.b.w = pair.b.w + pair.inverseInertiaB * rolling;
     }
-    pair.store(bodies, block, lane);
+    pair.store(bodies, placeA, placeB, lane);
+}
+
+template <int W>
+HUESTEP_INLINE void warmStartLanes(SolverBody* bodies, ContactBlock& block, int lane,
+                                   const ContactPass& pass) {
+    applyWarmImpulses<W>(bodies, block, block.bodyA, block.bodyB, lane, pass);
+}
+
+template <int W>
+HUESTEP_INLINE void warmStartAgainLanes(SolverBody* bodies, ContactBlock& block, int lane,
+                                        const ContactPass& pass) {
+    if (block.anyWarm == 0) return;
+    applyWarmImpulses<W>(bodies, block, block.warmA, block.warmB, lane, pass);
 }
 
 /// Current separation: at the start, plus how the anchors moved along the normal since.
@@ -322,15 +337,17 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
             blocks[i].mayHit = anySet(blocks[i].hit) ? -1 : 0;                    \
         }                                                                         \
     }
-#define HUESTEP_KERNELS(W, attributes)                                \
-    HUESTEP_CHECK(W, attributes)                                      \
-    HUESTEP_REFRESH(W, attributes)                                    \
-    HUESTEP_PASS(warmStart, ContactBlock, ContactPass, W, attributes) \
-    HUESTEP_PASS(solve, ContactBlock, ContactPass, W, attributes)     \
-    HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)     \
+#define HUESTEP_KERNELS(W, attributes)                                     \
+    HUESTEP_CHECK(W, attributes)                                           \
+    HUESTEP_REFRESH(W, attributes)                                         \
+    HUESTEP_PASS(warmStart, ContactBlock, ContactPass, W, attributes)      \
+    HUESTEP_PASS(warmStartAgain, ContactBlock, ContactPass, W, attributes) \
+    HUESTEP_PASS(solve, ContactBlock, ContactPass, W, attributes)          \
+    HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes) \
-    ContactKernels{check##W, refresh##W, warmStart##W, solve##W, relax##W, restitute##W, settle##W},
+#define HUESTEP_ENTRY(W, attributes)                                      \
+    ContactKernels{check##W, refresh##W, warmStart##W, warmStartAgain##W, \
+                   solve##W, relax##W,   restitute##W, settle##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 

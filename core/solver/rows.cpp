@@ -52,6 +52,12 @@ void transposeFields(const std::array<const Contact*, blockLanes>& contacts, Fie
     transpose(records, sizeof(Fields<float>) / sizeof(float), rowsOf<Fields>(rows));
 }
 
+/// The place of a body whose warm start a later substep has to repeat; of any other one that is
+/// read and not written.
+BodyPlace warmPlace(const Plan& plan, BodyPlace place) {
+    return place < 0 || plan.hasJoint[static_cast<std::size_t>(place)] != 0 ? place : ~place;
+}
+
 /// One lane of it.
 template <template <class> class Fields>
 void writeLane(const Fields<float>& record, Fields<LaneRow>& rows, std::uint32_t lane) {
@@ -97,6 +103,7 @@ void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range p
             // the substep. A body at rest on a contact must not: it would hover by h²g/2. Joints
             // have no such rest to lose, and a pendulum's period gets twice as exact (1.2e-4 →
             // 6e-5 at n = 4).
+            source.carries = plan.hasJoint[place] == 0;
             if (plan.hasContact[place] == 0) source.lag = (0.5f * h) * source.acceleration;
             source.linearFactor = 1.0f / (1.0f + h * info.linearDamping);
             source.angularFactor = 1.0f / (1.0f + h * info.angularDamping);
@@ -175,6 +182,7 @@ void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world,
 void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
     ContactBlock& rows = m_blocks[block];
     ContactFeatures features;
+    bool anyWarm = false;
     std::array<const Contact*, blockLanes> contacts{};
     for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
         const std::uint32_t at = block * blockLanes + lane;
@@ -182,8 +190,12 @@ void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32
         // Padding reads the world and writes to nowhere.
         const Contact& contact = place == none ? nothing : world.contacts[place];
         contacts[lane] = &contact;
-        rows.bodyA[lane] = plan.lanePlaces[at].a;
-        rows.bodyB[lane] = plan.lanePlaces[at].b;
+        const ConstraintBodies bodies = plan.lanePlaces[at];
+        rows.bodyA[lane] = bodies.a;
+        rows.bodyB[lane] = bodies.b;
+        rows.warmA[lane] = warmPlace(plan, bodies.a);
+        rows.warmB[lane] = warmPlace(plan, bodies.b);
+        anyWarm = anyWarm || rows.warmA[lane] >= 0 || rows.warmB[lane] >= 0;
         rows.motionA[lane] = static_cast<std::int32_t>(contact.bodyA);
         rows.motionB[lane] = static_cast<std::int32_t>(contact.bodyB);
         rows.boundsA[lane] = static_cast<std::int32_t>(contact.placeA);
@@ -199,6 +211,7 @@ void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32
         transposeFields<ContactPointFields>(
             contacts, rows.points[i], [i](const Contact& c) -> auto& { return c.points[i]; });
     }
+    rows.anyWarm = anyWarm ? -1 : 0;
     m_blockFeatures[block] = features;
 }
 

@@ -86,6 +86,8 @@ struct SoftStep::Sweep {
 const SoftStep::Sweep SoftStep::warmStartSweep{
     [](SolverBody* bodies, JointRow& row, const JointPass&) { warmStartJoint(bodies, row); },
     &RevoluteKernels::warmStart, &ContactKernels::warmStart};
+const SoftStep::Sweep SoftStep::warmStartAgainSweep{
+    warmStartSweep.joint, &RevoluteKernels::warmStart, &ContactKernels::warmStartAgain};
 const SoftStep::Sweep SoftStep::solveSweep{solveJoint, &RevoluteKernels::solve,
                                            &ContactKernels::solve};
 const SoftStep::Sweep SoftStep::relaxSweep{solveJoint, &RevoluteKernels::solve,
@@ -132,7 +134,7 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
     const Share places(batch.endPlace - batch.firstPlace, worker, workers);
     const auto overBodies = [&](auto&& f) {
         for (std::uint32_t i = places.begin; i < places.end; ++i) {
-            f(m_bodies[batch.firstPlace + i], m_sources[batch.firstPlace + i]);
+            f(batch.firstPlace + i);
         }
         barrier();
     };
@@ -149,16 +151,36 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
             if (c + 1 == batch.endColour || shared || isShared(plan.runs[c + 1])) barrier();
         }
     };
+    const bool hasJoints =
+        batch.firstJoint < batch.endJoint || batch.firstRevoluteBlock < batch.endRevoluteBlock;
     const float h = pass.h;
     for (std::uint32_t substep = 0; substep < pass.substeps; ++substep) {
-        overBodies([h](SolverBody& b, const Source& s) {
+        // The last impulses start the substep. Contact rows keep their arms over the step, so what
+        // they would do to a body is what they did to it in the last substep, and a body without
+        // joints carries that over by itself (performance page, 5). Joints turn their arms.
+        overBodies([&, first = substep == 0](std::uint32_t place) {
+            SolverBody& b = m_bodies[place];
+            const Source& s = m_sources[place];
+            Velocity& before = m_pushed[place];
+            const Velocity pushed{b.vx - before.x, b.vy - before.y, b.w - before.w};
             b.vx = (b.vx + h * s.acceleration.x) * s.linearFactor;
             b.vy = (b.vy + h * s.acceleration.y) * s.linearFactor;
             b.w = (b.w + h * s.angularAcceleration) * s.angularFactor;
+            before = {b.vx, b.vy, b.w};
+            if (first || !s.carries) return;
+            b.vx += pushed.x;
+            b.vy += pushed.y;
+            b.w += pushed.w;
         });
-        overColours(warmStartSweep, pass.biased);
+        if (substep == 0) {
+            overColours(warmStartSweep, pass.biased);
+        } else if (hasJoints) {
+            overColours(warmStartAgainSweep, pass.biased);
+        }
         overColours(solveSweep, pass.biased);
-        overBodies([h](SolverBody& b, const Source& s) {
+        overBodies([&](std::uint32_t place) {
+            SolverBody& b = m_bodies[place];
+            const Source& s = m_sources[place];
             b.dx += h * (b.vx - s.lag.x);
             b.dy += h * (b.vy - s.lag.y);
             const Rotation q = compose(cayley(0.5f * h * b.w), Rotation{b.dc, b.ds});
@@ -222,6 +244,7 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
     m_bodies.resize(plan.bodyOfPlace.size());
     m_poses.resize(plan.bodyOfPlace.size());
     m_sources.resize(plan.bodyOfPlace.size());
+    m_pushed.resize(plan.bodyOfPlace.size());
     m_joints.resize(plan.jointOrder.size());
     m_revolutes.resize(plan.revoluteOfLane.size() / blockLanes);
     m_blocks.resize(plan.contactOfLane.size() / blockLanes);

@@ -102,11 +102,17 @@ class SoftStep {
         Vec2 acceleration;                          // m/s²
         float angularAcceleration = 0;              // rad/s²
         float linearFactor = 1, angularFactor = 1;  // of damping, a substep
+        // Whether the impulses of one substep start the next one by what they did to its velocity.
+        bool carries = false;
         Vec2 lag;  // m/s, by how much the mean velocity of a substep is behind that at its end
+    };
+    struct Velocity {
+        float x = 0, y = 0;  // m/s
+        float w = 0;         // rad/s
     };
     struct Pass;
     struct Sweep;
-    static const Sweep warmStartSweep, solveSweep, relaxSweep, restituteSweep;
+    static const Sweep warmStartSweep, warmStartAgainSweep, solveSweep, relaxSweep, restituteSweep;
 
     // rows.cpp
     void prepareBodies(const Plan& plan, const SolverWorld& world, Range places);
@@ -134,6 +140,7 @@ class SoftStep {
 
     std::vector<SolverBody> m_bodies;  // by solver place
     std::vector<SolverPose> m_poses;   // by solver place
+    std::vector<Velocity> m_pushed;    // by solver place: before the impulses of the last substep
     std::vector<Source> m_sources;     // by solver place
     std::vector<ContactBlock> m_blocks;
     std::vector<ContactFeatures> m_blockFeatures;  // by block

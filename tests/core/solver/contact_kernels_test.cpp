@@ -198,6 +198,39 @@ TEST(ContactKernels, KeepTheManifoldsThatTheNarrowPhaseKeeps) {
     EXPECT_GT(others, 1'000u);
 }
 
+TEST(ContactKernels, StartBodiesAgainThatDoNotCarryTheirImpulsesAndNoOthers) {
+    Random random(116);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 200; ++trial) {
+        Rows start = randomRows(random);
+        const ContactPass pass = passOf(random);
+        std::vector<bool> carries(start.bodies.size());
+        for (std::size_t i = 0; i < carries.size(); ++i) carries[i] = random.once(2);
+        for (ContactBlock& block : start.blocks) {
+            const auto warm = [&](BodyPlace place) {
+                return place >= 0 && carries[static_cast<std::size_t>(place)] ? ~place : place;
+            };
+            for (int lane = 0; lane < blockLanes; ++lane) {
+                block.warmA[lane] = warm(block.bodyA[lane]);
+                block.warmB[lane] = warm(block.bodyB[lane]);
+                if (block.warmA[lane] >= 0 || block.warmB[lane] >= 0) block.anyWarm = -1;
+            }
+        }
+        for (const Simd simd : availableSimd()) {
+            Rows first = start, again = start;
+            contactKernels(simd).warmStart(first.bodies.data(), first.blocks.data(), first.count,
+                                           pass);
+            contactKernels(simd).warmStartAgain(again.bodies.data(), again.blocks.data(),
+                                                again.count, pass);
+            for (std::size_t i = 0; i < carries.size(); ++i) {
+                const SolverBody& expected = carries[i] ? start.bodies[i] : first.bodies[i];
+                ASSERT_EQ(std::memcmp(&again.bodies[i], &expected, sizeof expected), 0)
+                    << nameOf(simd) << " body " << i << " of trial " << trial;
+            }
+        }
+    }
+}
+
 TEST(ContactKernels, SettleImpulsesAsStateHoldsThemAndMarkHits) {
     Random random(115);
     SCOPED_TRACE(random.trace());
