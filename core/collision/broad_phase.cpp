@@ -326,6 +326,19 @@ void BroadPhase::visitOverlaps(const Level& level, const Bounds& box, Visit visi
     }
 }
 
+void BroadPhase::findFixed(std::uint32_t shape, const Bounds& box,
+                           std::span<const ShapeProxy> proxies,
+                           std::span<const ShapePair> forbidden,
+                           std::vector<std::uint32_t>& out) const {
+    const Entry mine = entryOf(shape, proxies[shape]);
+    for (const Level& level : m_levels) {
+        visitOverlaps(level, box, [&](const Entry& other) {
+            if (proxies[other.shape()].dynamic) return;
+            if (mayPair(mine, other, proxies, forbidden)) out.push_back(other.shape());
+        });
+    }
+}
+
 /// Walks entries in key order beside a run of others that moves up with them.
 ///
 /// `first(key)` is the first entry at or after a key. Entries of a row come with rising columns, so

@@ -63,6 +63,11 @@ class BroadPhase {
                 std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                 std::span<const ShapePair> forbidden, Executor* executor);
 
+    /// Appends the shapes that are not dynamic, that a shape may pair with and whose fat boxes
+    /// overlap `box`; which order, and how many beyond those whose bounds do, means nothing.
+    void findFixed(std::uint32_t shape, const Bounds& box, std::span<const ShapeProxy> proxies,
+                   std::span<const ShapePair> forbidden, std::vector<std::uint32_t>& out) const;
+
     /// Sorted by (a, b).
     [[nodiscard]] std::span<const ShapePair> pairs() const { return m_pairs; }
 

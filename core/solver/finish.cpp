@@ -54,41 +54,71 @@ BodyMotion freeFlight(const BodyMotion& motion, const BodyInfo& info, const Body
     return next;
 }
 
+/// Whether a point of the body may have gone farther than its stride: a bound that needs no root.
+/// A body that goes round and round is seen by its spin, rad over the step.
+bool leaps(const Pose& from, const Pose& to, float spin, const Stride& stride) {
+    const auto size = [](float v) { return v < 0.0f ? -v : v; };
+    const float chord = size(to.q.c - from.q.c) + size(to.q.s - from.q.s);
+    const float way = size(to.p.x - from.p.x) + size(to.p.y - from.p.y);
+    return way + stride.reach * maxOf(chord, size(spin)) > stride.most;
+}
+
+/// What the bodies of one block of work did.
+class Findings {
+ public:
+    /// Moves the body and keeps what is to be said of it.
+    void move(const SolverWorld& world, std::uint32_t body, const BodyMotion& next) {
+        BodyMotion& motion = world.motions[body];
+        const Pose from = motion.pose();
+        if (!settle(motion, next)) {
+            m_moved.broken.push_back(body);
+        } else if (leaps(from, motion.pose(), world.stepSeconds * motion.angularVelocity,
+                         world.strides[body])) {
+            m_moved.leaps.push_back({body, from});
+        }
+    }
+    void moveInto(Moved& all) const {
+        all.broken.insert(all.broken.end(), m_moved.broken.begin(), m_moved.broken.end());
+        all.leaps.insert(all.leaps.end(), m_moved.leaps.begin(), m_moved.leaps.end());
+    }
+
+ private:
+    Moved m_moved;
+};
+
 }  // namespace
 
-void SoftStep::finish(const Plan& plan, const SolverWorld& world, Executor* executor,
-                      std::vector<std::uint32_t>& broken) {
+Moved SoftStep::finish(const Plan& plan, const SolverWorld& world, Executor* executor) {
     const std::size_t places = plan.bodyOfPlace.size();
-    auto brokenPlaces = perBlock<std::vector<std::uint32_t>>(places, bodyGrain);
+    auto ofPlaces = perBlock<Findings>(places, bodyGrain);
     overRange(executor, places, bodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t place = std::max(begin, 1u); place < end; ++place) {
             const std::uint32_t body = plan.bodyOfPlace[place];
             if (!world.bodies[body].dynamic()) continue;  // copies of kinematic bodies
             const SolverBody& s = m_bodies[place];
-            BodyMotion& motion = world.motions[body];
+            const BodyMotion& motion = world.motions[body];
             BodyMotion next = motion;
             next.position = motion.position + Vec2{s.dx, s.dy};
             next.rotation = normalized(compose(Rotation{s.dc, s.ds}, motion.rotation));
             next.velocity = {s.vx, s.vy};
             next.angularVelocity = s.w;
-            if (!settle(motion, next)) brokenPlaces[begin / bodyGrain].push_back(body);
+            ofPlaces[begin / bodyGrain].move(world, body, next);
         }
     });
     const std::size_t free = plan.freeBodies.size();
-    auto brokenFree = perBlock<std::vector<std::uint32_t>>(free, bodyGrain);
+    auto ofFree = perBlock<Findings>(free, bodyGrain);
     overRange(executor, free, bodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const std::uint32_t body = plan.freeBodies[i];
             const BodyForce* force = world.forces.empty() ? nullptr : &world.forces[body];
-            BodyMotion& motion = world.motions[body];
-            if (!settle(motion, freeFlight(motion, world.bodies[body], force, world.gravity,
-                                           world.stepSeconds))) {
-                brokenFree[begin / bodyGrain].push_back(body);
-            }
+            ofFree[begin / bodyGrain].move(world, body,
+                                           freeFlight(world.motions[body], world.bodies[body],
+                                                      force, world.gravity, world.stepSeconds));
         }
     });
-    for (const auto& part : brokenPlaces) broken.insert(broken.end(), part.begin(), part.end());
-    for (const auto& part : brokenFree) broken.insert(broken.end(), part.begin(), part.end());
+    Moved moved;
+    for (const Findings& f : ofPlaces) f.moveInto(moved);
+    for (const Findings& f : ofFree) f.moveInto(moved);
     for (const std::uint32_t body : world.kinematic) {
         BodyMotion& motion = world.motions[body];
         if (motion.velocity == Vec2{} && motion.angularVelocity == 0.0f) continue;
@@ -96,9 +126,11 @@ void SoftStep::finish(const Plan& plan, const SolverWorld& world, Executor* exec
         next.position = motion.position + world.stepSeconds * motion.velocity;
         next.rotation = normalized(
             compose(rotationOf(world.stepSeconds * motion.angularVelocity), motion.rotation));
-        if (!settle(motion, next)) broken.push_back(body);
+        moved.driven.push_back({body, motion.pose()});
+        if (!settle(motion, next)) moved.broken.push_back(body);
     }
-    std::sort(broken.begin(), broken.end());
+    std::sort(moved.broken.begin(), moved.broken.end());
+    return moved;
 }
 
 }  // namespace huestep

@@ -32,12 +32,32 @@ struct ConstraintPlaces {
     std::uint32_t b = 0;
 };
 
+/// How far a body may go in a step before it could pass something unseen.
+struct Stride {
+    float most = 0;   ///< m, that no point of it may move by; half of its thickness
+    float reach = 0;  ///< m, farthest point of its shapes from its centre
+};
+
+/// A body that went somewhere, and where it was before. Places of the world.
+struct Leap {
+    std::uint32_t body = 0;
+    Pose from;
+};
+
+/// What became of the bodies of a step.
+struct Moved {
+    std::vector<std::uint32_t> broken;  ///< turned non-finite or left the world; sorted
+    std::vector<Leap> leaps;            ///< went beyond their stride; in no order that matters
+    std::vector<Leap> driven;           ///< kinematic bodies that moved; sorted
+};
+
 /// What the solver reads and writes of the world.
 struct SolverWorld {
     std::span<const BodyInfo> bodies;
     std::span<BodyMotion> motions;
     std::span<const BodyForce> forces;         ///< by body; empty: none
     std::span<const std::uint32_t> kinematic;  ///< places of kinematic bodies
+    std::span<const Stride> strides;           ///< by body
     std::span<const JointInfo> joints;
     std::span<const ConstraintPlaces> jointBodies;  ///< places of each joint's two bodies
     std::span<JointImpulses> jointImpulses;
@@ -90,10 +110,9 @@ class SoftStep {
     void solve(const Plan& plan, const SolverWorld& world, Simd simd, Executor* executor,
                std::vector<ContactHit>& hits, StageTimer& timer);
 
-    /// Poses and velocities back into motions, free flight included; `broken` gets the places of
-    /// bodies that turned non-finite or left the world, which stay where they were, at rest.
-    void finish(const Plan& plan, const SolverWorld& world, Executor* executor,
-                std::vector<std::uint32_t>& broken);
+    /// Poses and velocities back into motions, free flight included. Bodies that turned non-finite
+    /// or left the world stay where they were, at rest.
+    Moved finish(const Plan& plan, const SolverWorld& world, Executor* executor);
 
  private:
     /// What rows and passes need of a body beside its `SolverBody`, by solver place.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <numeric>
 
 #include "core/world/from_definition.h"
@@ -18,6 +19,29 @@ float sizeOf(const Hull& hull) {
     for (std::size_t v = 0; v < count; ++v) middle += hull.vertices[v];
     middle = (1.0f / static_cast<float>(count)) * middle;
     return reachOf(hull, middle);
+}
+
+/// Half of the least width of the core, and the radius. A core of one vertex or two has no width.
+float thicknessOf(const Hull& hull) {
+    const auto count = static_cast<std::size_t>(hull.count);
+    float least = 0.0f;
+    for (std::size_t i = 0; i < count && count > 2; ++i) {
+        float width = 0.0f;
+        for (std::size_t v = 0; v < count; ++v) {
+            width = maxOf(width, dot(hull.normals[i], hull.vertices[i] - hull.vertices[v]));
+        }
+        least = i == 0 ? width : minOf(least, width);
+    }
+    return 0.5f * least + hull.radius;
+}
+
+/// A body of several shapes is as thin as its thinnest. Mere lines are not looked at.
+Stride strideOf(std::span<const float> thickness, float reach) {
+    Stride stride{std::numeric_limits<float>::max(), reach};
+    for (const float t : thickness) {
+        if (t > 0.0f) stride.most = minOf(stride.most, 0.5f * t);
+    }
+    return stride;
 }
 
 /// Places in the order of ids given, those without one after all others in their own order.
@@ -146,11 +170,14 @@ void World::Data::rebuildShapes() {
             const Hull hull = hullOf<float>(record);
             s.hulls.push_back(hull);
             s.sizes.push_back(sizeOf(hull));
+            s.thickness.push_back(thicknessOf(hull));
             if (info.type() != BodyType::Static) {
                 s.reach[body] = maxOf(s.reach[body], huestep::reachOf(hull));
             }
             s.proxies.push_back({body, record.filter(), info.dynamic(), jointed[body] != 0, false});
         }
+        s.strides.push_back(
+            strideOf({s.thickness.data() + s.first[body], shape - s.first[body]}, s.reach[body]));
     }
     s.first[bodies] = shape;
     sortIntoKinds(s.proxies);

@@ -22,6 +22,8 @@ std::string_view nameOf(Stage stage) {
             return "batches";
         case Stage::Finish:
             return "finish";
+        case Stage::Continuous:
+            return "continuous";
         case Stage::Sleep:
             return "sleep";
         case Stage::Count:

@@ -43,6 +43,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
                             state.motions,
                             forces,
                             accelerators.shapes.kinematic,
+                            accelerators.shapes.strides,
                             state.joints,
                             accelerators.shapes.jointBodies,
                             state.jointImpulses,
@@ -56,11 +57,15 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     const Plan& plan = accelerators.plan;
     // Contacts, joints, motions → rows → impulses, hits; times are kept by stage within.
     solver.solve(plan, world, with.simd, executor, events.hits, timer);
-    std::vector<std::uint32_t> broken;
-    solver.finish(plan, world, executor, broken);  // rows → motions
-    for (const std::uint32_t body : broken) events.quarantined.push_back(state.bodies[body].id);
+    const Moved moved = solver.finish(plan, world, executor);  // rows → motions
+    for (const std::uint32_t body : moved.broken) {
+        events.quarantined.push_back(state.bodies[body].id);
+    }
     accelerators.rowsHold = true;
     timer.done(Stage::Finish);
+
+    stopLeaps(moved, executor);  // fast bodies' motions, bounds, hulls → their motions
+    timer.done(Stage::Continuous);
 
     settleIslands();  // motions, islands → sleep
     timer.done(Stage::Sleep);

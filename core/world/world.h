@@ -42,6 +42,7 @@ enum class Stage : std::uint8_t {
     Store,
     Batches,  ///< of all other islands: prepare to store in one go
     Finish,
+    Continuous,
     Sleep,
     Count
 };

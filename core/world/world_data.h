@@ -25,6 +25,8 @@ struct Shapes {
     std::vector<ShapeProxy> proxies;   // by shape
     std::vector<std::uint32_t> first;  // by body: its first shape; one more at the end
     std::vector<float> sizes;          // by shape, m: from its middle to its farthest point
+    std::vector<float> thickness;      // by shape, m: across its narrowest, half; 0: a mere line
+    std::vector<Stride> strides;       // by body
     std::vector<float> reach;  // by body, m: farthest point of a shape from the centre; 0: static
     std::vector<ShapePair> forbidden;  // body places that a joint keeps from touching, sorted
     std::vector<ConstraintPlaces> jointBodies;  // by joint
@@ -117,6 +119,10 @@ struct World::Data {
     void step(std::span<const Command> commands, const StepResources& with);
     void findPairs(Executor* executor);
     void updatePlan(Executor* executor);
+
+    // continuous.cpp
+    /// Puts fast bodies that met a static or kinematic one on their way back to where they did.
+    void stopLeaps(const Moved& moved, Executor* executor);
 
     // contacts.cpp
     void layOutCandidates();

@@ -1,0 +1,108 @@
+#include "core/collision/sweep.h"
+
+namespace huestep {
+
+namespace {
+
+// Each look comes nearer by a part that depends on how far the bound is from the truth; hulls that
+// take more are as good as there.
+constexpr int mostLooks = 48;
+// Cores this deep in each other by their faces may yet be apart: two segments end to end.
+constexpr float faceTolerance = 0.0001f;  // m
+
+constexpr std::size_t at(int i) {
+    return static_cast<std::size_t>(i);
+}
+
+float absolute(float v) {
+    return v < 0.0f ? -v : v;
+}
+
+/// The face of `a` over which `b` is highest, and how high; nothing where `a` has no faces.
+void highestOverFaces(const Hull& a, const Hull& b, bool flipped, bool& found, Separation& best) {
+    if (a.count < 2) return;
+    for (int i = 0; i < a.count; ++i) {
+        const Vec2 n = a.normals[at(i)];
+        float lowest = dot(n, b.vertices[0] - a.vertices[at(i)]);
+        for (int j = 1; j < b.count; ++j) {
+            lowest = minOf(lowest, dot(n, b.vertices[at(j)] - a.vertices[at(i)]));
+        }
+        if (found && !(lowest > best.distance)) continue;
+        found = true;
+        best = {lowest, flipped ? -n : n};
+    }
+}
+
+/// The shortest way from an edge of `a` to a vertex of `b`.
+void nearestVertex(const Hull& a, const Hull& b, bool flipped, bool& found, Vec2& shortest) {
+    for (int i = 0; i < a.count; ++i) {
+        const Vec2 v = a.vertices[at(i)];
+        const Vec2 edge = a.vertices[at(a.next(i))] - v;
+        const float squared = lengthSquared(edge);
+        for (int j = 0; j < b.count; ++j) {
+            const Vec2 w = b.vertices[at(j)] - v;
+            const float t = squared > 0.0f ? clampTo(dot(w, edge) / squared, 0.0f, 1.0f) : 0.0f;
+            const Vec2 way = w - t * edge;
+            if (found && !(lengthSquared(way) < lengthSquared(shortest))) continue;
+            found = true;
+            shortest = flipped ? -way : way;
+        }
+    }
+}
+
+}  // namespace
+
+Separation separationOf(const Hull& a, const Hull& b, const Pose& relative) {
+    Hull there;
+    there.count = b.count;
+    for (int i = 0; i < b.count; ++i) {
+        there.vertices[at(i)] = transform(relative, b.vertices[at(i)]);
+        there.normals[at(i)] = rotate(relative.q, b.normals[at(i)]);
+    }
+    Separation best;
+    bool faces = false;
+    highestOverFaces(a, there, false, faces, best);
+    highestOverFaces(there, a, true, faces, best);
+    const bool mayPass = a.count <= 2 && b.count <= 2 && best.distance > -faceTolerance;
+    if (!faces || best.distance > 0.0f || mayPass) {
+        Vec2 way;
+        bool found = false;
+        nearestVertex(a, there, false, found, way);
+        nearestVertex(there, a, true, found, way);
+        const float distance = length(way);
+        // What is nearer than the tolerance may be on either side: faces know which.
+        if (!faces || distance > maxOf(best.distance, faceTolerance)) {
+            best = {distance, normalized(way)};
+        }
+    }
+    best.distance -= a.radius + b.radius;
+    return best;
+}
+
+Pose relativeAt(const SweptHull& a, const SweptHull& b, float t) {
+    const Rotation q = a.at(t).q;
+    const Vec2 apart = (b.from.p - a.from.p) + t * (b.travel - a.travel);
+    return {unrotate(q, apart), relative(q, b.at(t).q)};
+}
+
+std::optional<float> timeOfApproach(const SweptHull& a, const SweptHull& b, float target,
+                                    float tolerance, float until) {
+    const float swing = absolute(a.turn) * a.reach + absolute(b.turn) * b.reach;
+    float t = 0.0f;
+    for (int look = 0; look < mostLooks; ++look) {
+        const Pose relative = relativeAt(a, b, t);
+        const Separation s = separationOf(*a.hull, *b.hull, relative);
+        const float gap = s.distance - target;
+        if (gap <= tolerance) return t;
+        // Along this normal, fixed in the world, the gap shrinks no faster; and the separation is
+        // the greatest over all normals.
+        const Vec2 normal = rotate(a.at(t).q, s.normal);
+        const float rate = swing - dot(normal, b.travel - a.travel);
+        if (!(rate > 0.0f)) return std::nullopt;
+        t += gap / rate;
+        if (!(t < until)) return std::nullopt;
+    }
+    return t;
+}
+
+}  // namespace huestep
