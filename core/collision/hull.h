@@ -75,6 +75,13 @@ Real reachOf(const HullT<Real>& hull, Vec2T<Real> from = {}) {
     return std::sqrt(squared) + hull.radius;
 }
 
+/// The core's farthest vertex from the origin, m: how far out turning moves anything, as the
+/// roundness around a vertex is the same on all sides.
+template <class Real>
+Real coreReachOf(const HullT<Real>& hull) {
+    return reachOf(hull) - hull.radius;
+}
+
 /// The tight box around the hull at the pose.
 template <class Real>
 BoundsT<Real> boundsOf(const HullT<Real>& hull, const PoseT<Real>& pose) {

@@ -28,7 +28,7 @@ struct SweptHull {
     Pose from;
     Vec2 travel;         ///< m
     float turn = 0.0f;   ///< rad
-    float reach = 0.0f;  ///< m, farthest point from the centre, which it turns about
+    float reach = 0.0f;  ///< m, farthest vertex from the centre, which it turns about
 
     [[nodiscard]] Pose at(float t) const {
         const Rotation q =

@@ -35,7 +35,7 @@ struct ConstraintPlaces {
 /// How far a body may go in a step before it could pass something unseen.
 struct Stride {
     float most = 0;   ///< m, that no point of it may move by; half of its thickness
-    float reach = 0;  ///< m, farthest point of its shapes from its centre
+    float reach = 0;  ///< m, farthest vertex of its shapes from its centre
 };
 
 /// A body that went somewhere, and where it was before. Places of the world.

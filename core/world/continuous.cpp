@@ -46,7 +46,8 @@ float turnBetween(Rotation from, Rotation to, float spin) {
 /// most reach · (1 − cos θ/2) ≤ reach · sin² θ/2 for |θ| ≤ π; beyond, it may be all around.
 Bounds boundsOnTheWay(const SweptHull& swept, const Pose& to) {
     if (absolute(swept.turn) > static_cast<float>(pi)) {
-        return grown(Bounds{minOf(swept.from.p, to.p), maxOf(swept.from.p, to.p)}, swept.reach);
+        return grown(Bounds{minOf(swept.from.p, to.p), maxOf(swept.from.p, to.p)},
+                     swept.reach + swept.hull->radius);
     }
     const Vec2 chord{to.q.c - swept.from.q.c, to.q.s - swept.from.q.s};
     return grown(unite(boundsOf(*swept.hull, swept.from), boundsOf(*swept.hull, to)),
@@ -172,7 +173,7 @@ class Stopper {
         const float spin = m_state.info().stepSeconds * motion.angularVelocity;
         const Hull& hull = m_known.hulls[shape];
         return {&hull, from, motion.position - from.p, turnBetween(from.q, motion.rotation, spin),
-                huestep::reachOf(hull)};
+                coreReachOf(hull)};
     }
     void put(std::uint32_t body, const Pose& stopped, const Meeting& meeting) const {
         BodyMotion& motion = m_state.motions[body];

@@ -36,10 +36,11 @@ float thicknessOf(const Hull& hull) {
 }
 
 /// A body of several shapes is as thin as its thinnest. Mere lines are not looked at.
-Stride strideOf(std::span<const float> thickness, float reach) {
-    Stride stride{std::numeric_limits<float>::max(), reach};
-    for (const float t : thickness) {
-        if (t > 0.0f) stride.most = minOf(stride.most, 0.5f * t);
+Stride strideOf(std::span<const Hull> hulls, std::span<const float> thickness) {
+    Stride stride{std::numeric_limits<float>::max(), 0.0f};
+    for (std::size_t i = 0; i < hulls.size(); ++i) {
+        if (thickness[i] > 0.0f) stride.most = minOf(stride.most, 0.5f * thickness[i]);
+        stride.reach = maxOf(stride.reach, coreReachOf(hulls[i]));
     }
     return stride;
 }
@@ -176,8 +177,9 @@ void World::Data::rebuildShapes() {
             }
             s.proxies.push_back({body, record.filter(), info.dynamic(), jointed[body] != 0, false});
         }
-        s.strides.push_back(
-            strideOf({s.thickness.data() + s.first[body], shape - s.first[body]}, s.reach[body]));
+        const std::size_t shapes = shape - s.first[body];
+        s.strides.push_back(strideOf({s.hulls.data() + s.first[body], shapes},
+                                     {s.thickness.data() + s.first[body], shapes}));
     }
     s.first[bodies] = shape;
     sortIntoKinds(s.proxies);

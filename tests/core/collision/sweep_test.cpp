@@ -16,7 +16,7 @@ SweptHull randomSweep(Random& random, const Hull& hull, double far) {
     swept.from = {random.point(-far, far), rotationOf(random.betweenF(-3.1, 3.1))};
     swept.travel = random.point(-3.0, 3.0);
     swept.turn = random.once(3) ? 0.0f : random.betweenF(-5.0, 5.0);
-    swept.reach = reachOf(hull);
+    swept.reach = coreReachOf(hull);
     return swept;
 }
 

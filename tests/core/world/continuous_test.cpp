@@ -237,6 +237,19 @@ TEST(Continuous, AFastBodyComesThroughAChainFromBehindAlone) {
     }
 }
 
+TEST(Continuous, AWheelSpinsOnTheSpotAsFastAsItLikes) {
+    BodyDef wheel = discAt({0.0f, 0.299f}, 0.3f);
+    wheel.angularVelocity = 3000.0f;
+    wheel.shapes[0].material.friction = 0.0f;
+    wheel.velocity = {5.0f, 0.0f};
+    Scene scene = weightless({ground(), wheel}, {1.0f / 60.0f, 4});
+    scene.gravity = {0.0f, -10.0f};
+    World world = worldOf(scene);
+    run(world, 60);
+    EXPECT_EQ(motionOf(world, 2).angularVelocity, 3000.0f);
+    EXPECT_NEAR(wide(motionOf(world, 2).position.x), 5.0, 1e-3);
+}
+
 TEST(Continuous, FiltersLetFastBodiesThrough) {
     BodyDef wall = bodyAt(BodyType::Static, {}, ShapeDef::box(0.01f, 5.0f));
     BodyDef disc = discAt({-3.0f, 0.0f}, 0.1f);
