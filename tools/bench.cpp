@@ -23,9 +23,9 @@ namespace huestep::tools {
 namespace {
 
 struct Options {
-    std::vector<std::string> scenes = {"pyramid", "many_pyramids", "joint_grid", "tumbler",
-                                       "washer",  "smash",         "compounds",  "junkyard",
-                                       "rain",    "small"};
+    std::vector<std::string> scenes = {"pyramid",  "many_pyramids", "joint_grid", "tumbler",
+                                       "spinner",  "washer",        "smash",      "compounds",
+                                       "junkyard", "rain",          "small"};
     std::string threads = "1,2";
     std::string engines = "huestep,box2d";
     std::uint64_t ticks = 0;  // 0: the scene's own

@@ -19,6 +19,7 @@ Scene pyramid(Values values);
 Scene manyPyramids(Values values);
 Scene jointGrid(Values values);
 Scene tumbler(Values values);
+Scene spinner(Values values);
 Scene smash(Values values);
 Scene compounds(Values values);
 Scene washer(Values values);

@@ -149,6 +149,45 @@ Scene tumbler(Values values) {
     return scene;
 }
 
+Scene spinner(Values values) {
+    const std::uint32_t bodies = count(values[0]);
+    Scene scene;
+    std::vector<Vec2> circle;
+    for (int i = 0; i < 360; ++i) {  // clockwise: a room
+        const RotationT<double> q = rotationOf(-2.0 * pi / 360.0 * i);
+        circle.push_back({static_cast<float>(40.0 * q.c), static_cast<float>(40.0 * q.s + 32.0)});
+    }
+    BodyDef room;
+    room.shapes = ShapeDef::chain(circle, true);
+    for (ShapeDef& side : room.shapes) side.material.friction = 0.1f;
+    const std::uint32_t ground = add(scene, room);
+
+    const ShapeDef bar = ShapeDef::box(0.4f, 20.0f, {}, {}, 0.2f);
+    BodyDef paddle = bodyOf(BodyType::Dynamic, {0.0f, 12.0f}, bar);
+    paddle.maySleep = false;
+    paddle.shapes[0].material.friction = 0.0f;
+    // It would scrape the room, but jointed bodies do not touch each other.
+    JointDef axle = hingeAt(scene, ground, ground, paddle.position);
+    axle.bodyB = add(scene, paddle);
+    axle.anchorB = {};
+    axle.motor = {true, 5.0f, caps::maxEffort};
+    scene.joints.push_back(axle);
+
+    std::array<ShapeDef, 3> kinds{ShapeDef::capsule({-0.25f, 0.0f}, {0.25f, 0.0f}, 0.25f),
+                                  ShapeDef::circle({}, 0.35f), ShapeDef::box(0.35f, 0.35f)};
+    for (ShapeDef& kind : kinds) {
+        kind.density = 0.25f;
+        kind.material = {0.1f, 0.1f};
+    }
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        const Vec2 place{static_cast<float>(i % 92), static_cast<float>(i / 92)};
+        const Vec2 position = Vec2{-23.0f, 2.0f} + 0.5f * place;
+        add(scene, bodyOf(BodyType::Dynamic, position, kinds[i % kinds.size()]));
+    }
+    fitLimits(scene);
+    return scene;
+}
+
 Scene small(Values values) {
     const std::uint32_t boxes = count(values[0]);
     Scene scene;

@@ -149,10 +149,11 @@ std::string nameOfScene(const testing::TestParamInfo<std::string>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, History,
                          testing::Values("pyramid:base=12", "many_pyramids:rows=3,columns=3,base=5",
-                                         "joint_grid:n=12", "tumbler:count=8", "washer:count=8",
-                                         "smash:columns=8,rows=8", "compounds:columns=4,rows=5",
-                                         "small", "hinges", "joints", "mixed", "terrain", "sandbox",
-                                         "pendulum", "junkyard:columns=20,rows=4",
+                                         "joint_grid:n=12", "tumbler:count=8", "spinner:bodies=250",
+                                         "washer:count=8", "smash:columns=8,rows=8",
+                                         "compounds:columns=4,rows=5", "small", "hinges", "joints",
+                                         "mixed", "terrain", "sandbox", "pendulum",
+                                         "junkyard:columns=20,rows=4",
                                          "rain:floors=1,columns=3,group=2,period=20", "chain"),
                          nameOfScene);
 

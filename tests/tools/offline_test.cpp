@@ -183,6 +183,7 @@ TEST(Verify, FindsEverySceneOfTheCatalogueEqualInEveryOrderAndAfterNoise) {
         {"pyramid", "pyramid:base=8"},
         {"rain", "rain:floors=1,columns=2,group=1,period=3"},
         {"smash", "smash:columns=4,rows=4"},
+        {"spinner", "spinner:bodies=20"},
         {"tumbler", "tumbler:count=3"},
         {"washer", "washer:count=5"}};
     const Json scenes = documentOf({"scenes"});

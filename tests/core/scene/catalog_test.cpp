@@ -178,6 +178,43 @@ TEST(Catalog, WasherHas8100BoxesInsideARingOf36PiecesWithFourPaddles) {
     }
 }
 
+TEST(Catalog, SpinnerHas6076BodiesOfThreeKindsAndABarInARoundRoom) {
+    const Scene scene = sceneOf("spinner");
+    ASSERT_EQ(scene.bodies.size(), 6'078u);
+    const BodyDef& room = scene.bodies[0];
+    ASSERT_EQ(room.shapes.size(), 360u);
+    const Vec2 middle{0.0f, 32.0f};
+    for (const ShapeDef& side : room.shapes) {
+        ASSERT_EQ(side.kind, ShapeKind::ChainSegment);
+        EXPECT_EQ(side.material.friction, 0.1f);
+        EXPECT_NEAR(length(side.vertices[1] - middle), 40.0f, 1e-5f);
+        EXPECT_LT(cross(side.vertices[1] - middle, side.vertices[2] - middle), 0.0f)
+            << "clockwise: it touches what is inside";
+    }
+    const BodyDef& bar = scene.bodies[1];
+    EXPECT_EQ(bar.position, (Vec2{0.0f, 12.0f}));
+    EXPECT_EQ(bar.shapes[0].vertices[2], (Vec2{0.4f, 20.0f}));
+    EXPECT_EQ(bar.shapes[0].radius, 0.2f);
+    ASSERT_EQ(scene.joints.size(), 1u);
+    EXPECT_EQ(scene.joints[0].motor, (MotorDef{true, 5.0f, 1e12f}));
+    EXPECT_FALSE(scene.joints[0].collideConnected) << "the bar reaches through the room's floor";
+    const std::array<std::uint8_t, 3> vertices{2, 1, 4};
+    for (std::size_t i = 2; i < scene.bodies.size(); ++i) {
+        const BodyDef& body = scene.bodies[i];
+        EXPECT_EQ(body.shapes[0].vertexCount, vertices[(i - 2) % 3]) << i;
+        EXPECT_EQ(body.shapes[0].density, 0.25f);
+        EXPECT_EQ(body.shapes[0].material, (Material{0.1f, 0.1f}));
+        EXPECT_LT(length(body.position - middle), 39.0f);
+    }
+    EXPECT_EQ(scene.bodies[2].position, (Vec2{-23.0f, 2.0f}));
+    EXPECT_EQ(scene.bodies[2 + 91].position, (Vec2{22.5f, 2.0f}));
+    EXPECT_EQ(scene.bodies.back().position, (Vec2{-21.5f, 35.0f}));
+    const Scene largest = sceneOf("spinner:bodies=11000");
+    for (std::size_t i = 1; i < largest.bodies.size(); ++i) {
+        EXPECT_LT(length(largest.bodies[i].position - middle), 39.0f) << i;
+    }
+}
+
 TEST(Catalog, JunkyardHas8000PiecesOfFiveCornersInATroughWithAPusher) {
     const Scene scene = sceneOf("junkyard");
     EXPECT_EQ(countOf(scene, BodyType::Dynamic), 8'000u);
@@ -309,7 +346,7 @@ TEST(Catalog, NamesWhatIsWrongAndWhatThereIsInstead) {
         sentenceFor("pyrmaid"),
         "there is no scene 'pyrmaid'; there are ballistic, chain, compounds, double_pendulum, "
         "hinges, joint_grid, joints, junkyard, many_pyramids, mixed, pendulum, pyramid, rain, "
-        "sandbox, small, smash, stack, terrain, tumbler, washer");
+        "sandbox, small, smash, spinner, stack, terrain, tumbler, washer");
     EXPECT_EQ(sentenceFor("many_pyramids:bse=1"),
               "many_pyramids has no parameter 'bse'; it has rows, columns, base");
     EXPECT_EQ(sentenceFor("mixed:base=1"), "mixed has no parameter 'base'; it has none");

@@ -1,5 +1,6 @@
 // Fast bodies against what does not give way: none passes, and none that would miss is touched.
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/trig.h"
@@ -248,6 +249,21 @@ TEST(Continuous, AWheelSpinsOnTheSpotAsFastAsItLikes) {
     run(world, 60);
     EXPECT_EQ(motionOf(world, 2).angularVelocity, 3000.0f);
     EXPECT_NEAR(wide(motionOf(world, 2).position.x), 5.0, 1e-3);
+}
+
+TEST(Continuous, NobodyLeavesTheSpinnersRoomHoweverHardTheBarHits) {
+    World world = worldOf("spinner:bodies=500");
+    double fastest = 0.0;
+    for (int tick = 0; tick < 300; ++tick) {
+        world.step({});
+        for (std::size_t i = 2; i < world.bodies().size(); ++i) {
+            const BodyMotion& motion = world.motions()[i];
+            ASSERT_LT(length(motion.position - Vec2{0.0f, 32.0f}), 40.0f)
+                << "tick " << tick << ", body " << world.bodies()[i].id;
+            fastest = std::max(fastest, wide(length(motion.velocity)));
+        }
+    }
+    EXPECT_GT(fastest, 100.0) << "m/s, more than a body's width a tick";
 }
 
 TEST(Continuous, FiltersLetFastBodiesThrough) {
