@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 
 #include "core/contact/contact_fields.h"
 #include "core/state/records.h"
@@ -67,6 +68,15 @@ struct alignas(64) ContactBlock : ContactFields<LaneRow> {
     std::int32_t hit[blockLanes];   ///< −1: the shapes met hard in this step; 0: they did not
     std::int32_t mayHit;            ///< whether any lane approaches fast enough to hit or bounce
 };
+
+/// Makes the impulses of one block those of another.
+inline void copyImpulses(const ContactBlock& from, ContactBlock& to) {
+    for (std::size_t i = 0; i < 2; ++i) {
+        std::memcpy(to.points[i].normalImpulse, from.points[i].normalImpulse, sizeof(LaneRow));
+        std::memcpy(to.points[i].tangentImpulse, from.points[i].tangentImpulse, sizeof(LaneRow));
+    }
+    std::memcpy(to.rollingImpulse, from.rollingImpulse, sizeof(LaneRow));
+}
 
 /// Soft constraint coefficients of a damped oscillator (frequency f, damping ratio ζ) at step h:
 /// ω = 2πf, a₁ = 2ζ + hω, a₂ = hω a₁, a₃ = 1/(1 + a₂); bias rate ω/a₁, mass scale a₂a₃, impulse

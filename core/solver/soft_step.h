@@ -103,6 +103,21 @@ class SoftStep {
     /// Writes a contact's row to its lane, whose bodies stay.
     void writeRow(std::uint32_t lane, const Contact& contact);
 
+    /// Takes over what another holds for its next step. Blocks for which `same(block)` differ in
+    /// their impulses alone. Allocates only where there are more blocks than ever before.
+    template <class Same>
+    void copyRows(const SoftStep& other, Same&& same) {
+        m_blockFeatures = other.m_blockFeatures;
+        m_blocks.resize(other.m_blocks.size());
+        for (std::uint32_t block = 0; block < m_blocks.size(); ++block) {
+            if (same(block)) {
+                copyImpulses(other.m_blocks[block], m_blocks[block]);
+            } else {
+                m_blocks[block] = other.m_blocks[block];
+            }
+        }
+    }
+
     /// Rows from contacts, joints and motions; all substeps; joints' impulses back into joints;
     /// contacts' stay in their rows. A giant batch goes through each stage on all threads; any
     /// other goes through all of them on one thread, while its rows are in that core's cache.

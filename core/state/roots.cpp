@@ -13,12 +13,6 @@ std::uint64_t treeOf(const std::vector<Record>& array) {
     return rootOf(leavesOf(std::as_bytes(std::span(array)), sizeof(Record)));
 }
 
-/// Arrays that change by command alone.
-template <class Record>
-inline constexpr bool isDefinition =
-    std::is_same_v<Record, BodyInfo> || std::is_same_v<Record, ShapeInfo> ||
-    std::is_same_v<Record, JointInfo> || std::is_same_v<Record, SpawnPoint>;
-
 }  // namespace
 
 std::vector<std::uint64_t> leavesOf(std::span<const std::byte> bytes, std::size_t recordBytes) {

@@ -39,22 +39,35 @@ std::optional<std::uint32_t> placeById(const std::vector<Record>& array, std::ui
     return static_cast<std::uint32_t>(at - array.begin());
 }
 
-/// Calls `visit(name, array)` for every array, in the order of snapshots and of differences.
-/// The one list: whoever hashes, saves, loads or compares goes through here.
+/// Calls `visit(name, arrays…)` for every array, with that of each state, in the order of
+/// snapshots and of differences. The one list: whoever hashes, saves, loads, compares or copies
+/// goes through here.
+template <class Visit, class... States>
+void forEachArrayOf(Visit&& visit, States&... s) {
+    visit(std::string_view("world"), s.world...);
+    visit(std::string_view("player"), s.players...);
+    visit(std::string_view("motion"), s.motions...);
+    visit(std::string_view("body"), s.bodies...);
+    visit(std::string_view("shape"), s.shapes...);
+    visit(std::string_view("jointImpulse"), s.jointImpulses...);
+    visit(std::string_view("joint"), s.joints...);
+    visit(std::string_view("contact"), s.contacts...);
+    visit(std::string_view("spawnPoint"), s.spawnPoints...);
+    visit(std::string_view("playerBody"), s.playerBody...);
+    visit(std::string_view("playerMotion"), s.playerMotion...);
+    visit(std::string_view("playerShape"), s.playerShapes...);
+}
+
+/// The same of one state.
 template <class State, class Visit>
 void forEachArray(State& s, Visit&& visit) {
-    visit(std::string_view("world"), s.world);
-    visit(std::string_view("player"), s.players);
-    visit(std::string_view("motion"), s.motions);
-    visit(std::string_view("body"), s.bodies);
-    visit(std::string_view("shape"), s.shapes);
-    visit(std::string_view("jointImpulse"), s.jointImpulses);
-    visit(std::string_view("joint"), s.joints);
-    visit(std::string_view("contact"), s.contacts);
-    visit(std::string_view("spawnPoint"), s.spawnPoints);
-    visit(std::string_view("playerBody"), s.playerBody);
-    visit(std::string_view("playerMotion"), s.playerMotion);
-    visit(std::string_view("playerShape"), s.playerShapes);
+    forEachArrayOf(visit, s);
 }
+
+/// Records that change by command alone.
+template <class Record>
+inline constexpr bool isDefinition =
+    std::is_same_v<Record, BodyInfo> || std::is_same_v<Record, ShapeInfo> ||
+    std::is_same_v<Record, JointInfo> || std::is_same_v<Record, SpawnPoint>;
 
 }  // namespace huestep

@@ -64,7 +64,7 @@ void World::Data::contactsToState() const {
 void World::Data::changeDefinitions() {
     contactsToState();  // the places that contacts refer to are about to change
     accelerators.definitionsStale = true;
-    roots.definitionsKnown = false;
+    touchDefinitions();
 }
 
 World::World(std::unique_ptr<Data> data) : m_data(std::move(data)) {}

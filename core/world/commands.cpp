@@ -215,7 +215,7 @@ class Applier {
         if (author().grab == 0 || !held) return Rejection::NothingGrabbed;
         JointInfo& joint = m_state.joints[*held];
         joint.target = canonicalZero(action.target);
-        m_world.roots.definitionsKnown = false;
+        m_world.touchDefinitions();
         if (const auto body = m_world.findBody(joint.bodyB)) m_world.wake(*body);
         return Rejection::None;
     }
@@ -278,7 +278,7 @@ class Applier {
         joint.flags =
             action.enabled ? joint.flags | JointInfo::motor : joint.flags & ~JointInfo::motor;
         if (!action.enabled) m_state.jointImpulses[*place].motor = 0.0f;
-        m_world.roots.definitionsKnown = false;
+        m_world.touchDefinitions();
         for (const BodyId id : {joint.bodyA, joint.bodyB}) {
             if (const auto body = m_world.findBody(id)) m_world.wake(*body);
         }

@@ -54,14 +54,17 @@ ContactChange World::Data::changeOf(const Contact& contact) const {
 std::uint32_t World::Data::addContact(const Contact& contact) {
     Accelerators& acc = accelerators;
     acc.linksStale = true;
+    acc.candidatesStamp = stamp;
     if (acc.freeContacts.empty()) {
         acc.contacts.push_back(contact);
+        acc.contactStamps.push_back(stamp);
         acc.inLanes.push_back(0);
         return static_cast<std::uint32_t>(acc.contacts.size() - 1);
     }
     const std::uint32_t place = acc.freeContacts.back();
     acc.freeContacts.pop_back();
     acc.contacts[place] = contact;
+    acc.contactStamps[place] = stamp;
     acc.inLanes[place] = 0;
     return place;
 }
@@ -69,6 +72,8 @@ std::uint32_t World::Data::addContact(const Contact& contact) {
 void World::Data::dropContact(std::uint32_t contact) {
     Accelerators& acc = accelerators;
     acc.linksStale = true;
+    acc.candidatesStamp = stamp;
+    acc.contactStamps[contact] = stamp;
     acc.contacts[contact].pointCount = 0;
     acc.freeContacts.push_back(contact);
 }
@@ -95,6 +100,7 @@ void World::Data::layOutCandidates() {
         }
         acc.candidatesValid = true;
     }
+    acc.candidatesStamp = stamp;
     acc.candidates.clear();
     acc.candidates.reserve(acc.broadPhase.pairs().size());
     auto from = old.begin();
@@ -131,6 +137,7 @@ void World::Data::fetchImpulses(Executor* executor) {
                   for (std::uint32_t lane = begin * blockLanes; lane < end * blockLanes; ++lane) {
                       const std::uint32_t contact = acc.plan.contactOfLane[lane];
                       if (contact == none || !acc.solver.isKept(lane)) continue;
+                      acc.contactStamps[contact] = stamp;
                       setImpulses(acc.contacts[contact], acc.solver.impulses(lane));
                   }
               });
@@ -179,6 +186,7 @@ void World::Data::collideAll(Simd simd, Executor* executor) {
     };
     const auto lookAt = [&](std::uint32_t place, ContactUpdate update, Findings& mine) {
         const Contact& contact = acc.contacts[place];
+        acc.contactStamps[place] = stamp;
         mine.recycled += update == ContactUpdate::Recycled;
         if (contact.pointCount == 0) {
             mine.ended.push_back(place);
@@ -211,6 +219,7 @@ void World::Data::collideAll(Simd simd, Executor* executor) {
                     if (!isActive(both)) {
                         // It fell asleep; who wakes it looks at the contact alone.
                         setImpulses(acc.contacts[place], acc.solver.impulses(lane));
+                        acc.contactStamps[place] = stamp;
                         acc.solver.dropLane(lane);
                         acc.inLanes[place] = 0;
                     } else if (acc.solver.isKept(lane)) {

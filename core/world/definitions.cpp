@@ -146,6 +146,7 @@ void World::Data::rebuildShapes() {
     assert(contactsInState);
     accelerators = {};
     accelerators.definitionsStale = false;
+    accelerators.shapesStamp = stamp;
     Shapes& s = accelerators.shapes;
     const std::size_t bodies = state.bodies.size();
     s.first.assign(bodies + 1, 0);

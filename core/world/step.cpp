@@ -19,6 +19,7 @@ constexpr float travelTicks = 3.0f;  // how far ahead fat bounds look
 }  // namespace
 
 void World::Data::step(std::span<const Command> commands, const StepResources& with) {
+    ++stamp;
     events = {};
     report = {};
     forces.clear();
@@ -57,6 +58,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     const Plan& plan = accelerators.plan;
     // Contacts, joints, motions → rows → impulses, hits; times are kept by stage within.
     solver.solve(plan, world, with.simd, executor, events.hits, timer);
+    if (!accelerators.rowsHold) accelerators.rowStamps.assign(solver.blockCount(), stamp);
     const Moved moved = solver.finish(plan, world, executor);  // rows → motions
     for (const std::uint32_t body : moved.broken) {
         events.quarantined.push_back(state.bodies[body].id);
@@ -138,6 +140,7 @@ void World::Data::findPairs(Executor* executor) {
     }
     const bool changed = acc.broadPhase.update(acc.tight, acc.travel, left, shapes.proxies,
                                                shapes.forbidden, executor);
+    if (fresh || !left.empty()) acc.broadPhaseStamp = stamp;
     if (changed || fresh) layOutCandidates();
 }
 
@@ -174,8 +177,10 @@ void World::Data::updatePlan(Executor* executor) {
         }
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
                  static_cast<std::uint32_t>(state.bodies.size()));
+        acc.planStamp = stamp;
     } else {
         for (const std::uint32_t lane : acc.freshLanes) {
+            acc.rowStamps[lane / blockLanes] = stamp;
             acc.solver.writeRow(lane, acc.contacts[plan.contactOfLane[lane]]);
         }
     }

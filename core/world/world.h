@@ -96,6 +96,27 @@ struct RayHit {
     Vec2 normal;
 };
 
+/// An image of a world at a tick within the process, caches included: to go back to that tick, as
+/// a prediction does when it was wrong. Made by `World::checkpoint`; a vessel that is used again
+/// and again allocates nothing once it has held as much.
+///
+/// It is a value of its own: worlds may go before it. Thread rule: as of a container.
+class Checkpoint {
+ public:
+    Checkpoint();  ///< holds nothing
+    Checkpoint(Checkpoint&&) noexcept;
+    Checkpoint& operator=(Checkpoint&&) noexcept;
+    ~Checkpoint();
+
+    [[nodiscard]] bool empty() const { return m_data == nullptr; }
+    [[nodiscard]] std::uint64_t tick() const;  ///< of the world it holds; not of an empty one
+
+ private:
+    friend class World;
+    struct Data;
+    std::unique_ptr<Data> m_data;
+};
+
 class World {
  public:
     /// Builds the world of a scene; fails with the sentence of `check(scene)`.
@@ -116,6 +137,18 @@ class World {
 
     /// An exact image of the state; see `core/state/snapshot.h` for its layout.
     [[nodiscard]] std::vector<std::byte> save() const;
+
+    /// Makes `into` the image of the world as it is, with the caches of its last step. Costs the
+    /// copying of what moved, and of what else has changed since `into` was last made from this
+    /// world or last restored to it: definitions, pairs and constraints that are as they were then
+    /// are left alone. Thread rule: several may read one world so, each with a checkpoint of its
+    /// own.
+    void checkpoint(Checkpoint& into) const;
+    /// Makes this world what it was: its state, events, report and caches, so that the next steps
+    /// are those that followed then, to the bit and without anything made again. Costs the same
+    /// copying. Any world may take any checkpoint that is not empty; that of another is copied
+    /// whole.
+    void restore(const Checkpoint& from);
 
     [[nodiscard]] std::uint64_t tick() const;
     /// XXH3-64 over pose and velocity of every body, tick and counts.

@@ -2,6 +2,9 @@
 ///
 /// Private to core/world. Everything in `Accelerators` may be thrown away between two steps; a
 /// test does so and expects the same hashes.
+///
+/// Whoever changes a part that has a stamp, stamps it with `World::Data::stamp`: a checkpoint skips
+/// what has kept its stamp (carried.cpp).
 #pragma once
 
 #include <memory>
@@ -39,6 +42,10 @@ struct Candidate {
     std::uint32_t contact = none;  ///< place of its contact, or `none` while they do not touch
 };
 
+/// Which step last changed something; 0: it is as it was made. Stamps rise and are never given
+/// twice in one world, so what has the same stamp in two of its images is the same.
+using Stamp = std::uint64_t;
+
 struct Accelerators {
     bool definitionsStale = true;  // `shapes` and all below must be made again
     Shapes shapes;
@@ -56,6 +63,13 @@ struct Accelerators {
     bool rowsHold = false;   // the solver's contact rows are those of this plan
     std::vector<std::uint32_t> freshLanes;  // lanes whose contact has a new manifold
     SoftStep solver;
+
+    Stamp shapesStamp = 0;
+    Stamp broadPhaseStamp = 0;
+    Stamp candidatesStamp = 0;
+    Stamp planStamp = 0;
+    std::vector<Stamp> contactStamps;  // by place in `contacts`
+    std::vector<Stamp> rowStamps;      // by block of the solver's contact rows; impulses apart
 };
 
 /// How a body takes part in a step: not at all; moved by it; a kinematic body that moves; asleep,
@@ -68,7 +82,8 @@ constexpr bool isAsleep(std::uint8_t activity) {
     return (activity & sleepsNow) != 0;
 }
 
-struct World::Data {
+/// What a world carries from one step to the next; a checkpoint holds an image of it.
+struct Carried {
     // The step works on the contacts of `accelerators`. `state.contacts` is current only while
     // `contactsInState`: whoever reads it, or throws the accelerators away, copies it there first.
     mutable WorldState state;
@@ -77,10 +92,21 @@ struct World::Data {
     Events events;
     StepReport report;
     mutable RootCache roots;
+    std::vector<std::uint8_t> activity;  // by body, in the last step
+    Stamp definitionsStamp = 0;          // of bodies, shapes, joints and what players get
+
+    /// Makes this the image of another. `related`: stamps of both mean the same; then only what
+    /// differs is copied, and nothing is allocated once all vectors have had the room.
+    void become(const Carried& other, bool related);  // carried.cpp
+};
+
+struct World::Data : Carried {
+    Stamp stamp = 1;  // of the next change; no restore takes it back
+    // Whose stamps these are. Another's image, once taken over, makes the world a new one.
+    std::shared_ptr<const int> lineage = std::make_shared<const int>(0);
 
     // Of one step.
-    std::vector<BodyForce> forces;       // by body; empty: none
-    std::vector<std::uint8_t> activity;  // by body
+    std::vector<BodyForce> forces;  // by body; empty: none
     bool anyAsleep = false;
     std::vector<std::uint8_t> removed;  // by body; empty: none
     std::vector<std::uint8_t> removedJoints;
@@ -94,6 +120,11 @@ struct World::Data {
     void contactsToState() const;
     /// To be called before bodies, shapes or joints come or go.
     void changeDefinitions();
+    /// To be called when the record of a body, shape or joint changes.
+    void touchDefinitions() {
+        definitionsStamp = stamp;
+        roots.definitionsKnown = false;
+    }
 
     // definitions.cpp
     /// Appends bodies and joints that have been checked; returns the first new body's id.
