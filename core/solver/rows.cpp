@@ -235,14 +235,6 @@ bool SoftStep::allKept(std::uint32_t block) const {
     return all != 0;
 }
 
-ContactImpulses SoftStep::impulses(std::uint32_t lane) const {
-    const ContactBlock& rows = m_blocks[lane / blockLanes];
-    const std::uint32_t at = lane % blockLanes;
-    return {{rows.points[0].normalImpulse[at], rows.points[1].normalImpulse[at]},
-            {rows.points[0].tangentImpulse[at], rows.points[1].tangentImpulse[at]},
-            rows.rollingImpulse[at]};
-}
-
 /// Rows go on from what the state holds, to the bit: settled impulses are both.
 void SoftStep::settleBlocks(const Plan& plan, const SolverWorld& world,
                             const ContactKernels& kernels, Range blocks,

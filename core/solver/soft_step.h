@@ -99,7 +99,13 @@ class SoftStep {
                 static_cast<std::uint32_t>(rows.motionB[lane % blockLanes])};
     }
     void dropLane(std::uint32_t lane) { m_blocks[lane / blockLanes].kept[lane % blockLanes] = 0; }
-    [[nodiscard]] ContactImpulses impulses(std::uint32_t lane) const;
+    [[nodiscard]] ContactImpulses impulses(std::uint32_t lane) const {
+        const ContactBlock& rows = m_blocks[lane / blockLanes];
+        const std::uint32_t at = lane % blockLanes;
+        return {{rows.points[0].normalImpulse[at], rows.points[1].normalImpulse[at]},
+                {rows.points[0].tangentImpulse[at], rows.points[1].tangentImpulse[at]},
+                rows.rollingImpulse[at]};
+    }
     /// Writes a contact's row to its lane, whose bodies stay.
     void writeRow(std::uint32_t lane, const Contact& contact);
 

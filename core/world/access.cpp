@@ -38,31 +38,61 @@ void World::Data::wake(std::uint32_t body) {
     if (state.bodies[body].dynamic()) state.motions[body].rest = 0;
 }
 
+/// Which contact each record shows, in key order, and which lane holds its impulses.
+void World::Data::layOutRecords() const {
+    const Accelerators& acc = accelerators;
+    std::vector<std::uint32_t> recordOf(acc.contacts.size(), none);
+    gathered.contactOf.clear();
+    for (const Candidate& candidate : acc.candidates) {
+        if (candidate.contact == none) continue;
+        recordOf[candidate.contact] = static_cast<std::uint32_t>(gathered.contactOf.size());
+        gathered.contactOf.push_back(candidate.contact);
+    }
+    gathered.stamps.assign(gathered.contactOf.size(), 0);
+    state.contacts.resize(gathered.contactOf.size());
+    gathered.recordOfLane.assign(acc.rowsHold ? acc.plan.contactOfLane.size() : 0, none);
+    for (std::size_t lane = 0; lane < gathered.recordOfLane.size(); ++lane) {
+        const std::uint32_t contact = acc.plan.contactOfLane[lane];
+        if (contact != none) gathered.recordOfLane[lane] = recordOf[contact];
+    }
+    gathered.candidates = acc.candidatesStamp;
+    gathered.plan = acc.planStamp;
+}
+
 /// Gathers the touching contacts, in key order, to where snapshots and hashes look for them.
 void World::Data::contactsToState() const {
     if (contactsInState) return;
     const Accelerators& acc = accelerators;
-    std::vector<std::uint32_t> laneOf(acc.contacts.size(), none);
-    if (acc.rowsHold) {
-        for (std::uint32_t lane = 0; lane < acc.plan.contactOfLane.size(); ++lane) {
-            const std::uint32_t contact = acc.plan.contactOfLane[lane];
-            if (contact != none) laneOf[contact] = lane;
-        }
+    if (gathered.candidates != acc.candidatesStamp || gathered.plan != acc.planStamp) {
+        layOutRecords();
     }
-    state.contacts.clear();
-    for (const Candidate& candidate : acc.candidates) {
-        if (candidate.contact == none) continue;
-        const Contact& contact = acc.contacts[candidate.contact];
-        const std::uint32_t lane = laneOf[candidate.contact];
-        state.contacts.push_back(
-            stateOf(contact, state.shapes[contact.placeA].id, state.shapes[contact.placeB].id,
-                    lane == none ? impulsesOf(contact) : acc.solver.impulses(lane)));
+    for (std::size_t record = 0; record < gathered.contactOf.size(); ++record) {
+        const std::uint32_t place = gathered.contactOf[record];
+        if (gathered.stamps[record] == acc.contactStamps[place]) continue;
+        gathered.stamps[record] = acc.contactStamps[place];
+        const Contact& contact = acc.contacts[place];
+        state.contacts[record] = stateOf(contact, state.shapes[contact.placeA].id,
+                                         state.shapes[contact.placeB].id, impulsesOf(contact));
+    }
+    // Records lie in key order and lanes by colour: those a while ahead are fetched in time.
+    constexpr std::uint32_t ahead = 2 * blockLanes;
+    const auto lanes = static_cast<std::uint32_t>(gathered.recordOfLane.size());
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        const std::uint32_t later = gathered.recordOfLane[std::min(lane + ahead, lanes - 1)];
+        if (later != none) __builtin_prefetch(&state.contacts[later], 1);
+        if (gathered.recordOfLane[lane] == none) continue;
+        const ContactImpulses now = acc.solver.impulses(lane);
+        ContactState& record = state.contacts[gathered.recordOfLane[lane]];
+        record.normalImpulse = now.normal;
+        record.tangentImpulse = now.tangent;
+        record.rollingImpulse = now.rolling;
     }
     contactsInState = true;
 }
 
 void World::Data::changeDefinitions() {
     contactsToState();  // the places that contacts refer to are about to change
+    gathered = {};
     accelerators.definitionsStale = true;
     touchDefinitions();
 }

@@ -88,6 +88,7 @@ void World::restore(const Checkpoint& from) {
     assert(!from.empty());
     const bool related = m_data->lineage == from.m_data->lineage;
     m_data->become(from.m_data->image, related);
+    if (m_data->contactsInState || !related) m_data->gathered = {};
     m_data->forces.clear();
     m_data->anyAsleep = false;
     if (related) return;

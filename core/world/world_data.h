@@ -100,10 +100,22 @@ struct Carried {
     void become(const Carried& other, bool related);  // carried.cpp
 };
 
+/// How `state.contacts` was last gathered from the accelerators: while candidates and plan are the
+/// same, contacts that have kept their manifold are written anew in their impulses alone.
+struct Gathered {
+    Stamp candidates = 0;  // of when it was laid out; 0: not at all
+    Stamp plan = 0;
+    std::vector<std::uint32_t> contactOf;     // by record: place in `Accelerators::contacts`
+    std::vector<Stamp> stamps;                // by record: of the contact that it shows
+    std::vector<std::uint32_t> recordOfLane;  // or `none`
+};
+
 struct World::Data : Carried {
     Stamp stamp = 1;  // of the next change; no restore takes it back
     // Whose stamps these are. Another's image, once taken over, makes the world a new one.
     std::shared_ptr<const int> lineage = std::make_shared<const int>(0);
+
+    mutable Gathered gathered;  // of this world's `state.contacts`
 
     // Of one step.
     std::vector<BodyForce> forces;  // by body; empty: none
@@ -118,6 +130,7 @@ struct World::Data : Carried {
     [[nodiscard]] std::span<const ShapeInfo> shapesOf(BodyId id) const;
     void wake(std::uint32_t body);
     void contactsToState() const;
+    void layOutRecords() const;
     /// To be called before bodies, shapes or joints come or go.
     void changeDefinitions();
     /// To be called when the record of a body, shape or joint changes.
