@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/state/delta.h"
 #include "core/state/snapshot.h"
 #include "core/state/validate.h"
 #include "core/world/world_data.h"
@@ -135,6 +136,21 @@ Result<World> World::restore(std::span<const std::byte> snapshot) {
 std::vector<std::byte> World::save() const {
     m_data->contactsToState();
     return writeSnapshot(m_data->state);
+}
+
+std::vector<std::byte> World::saveDelta(const World& base) const {
+    const std::uint64_t baseRoot = base.fullRoot();  // and gathers the contacts
+    const std::uint64_t root = fullRoot();
+    return writeDelta(base.m_data->state, baseRoot, m_data->state, root);
+}
+
+Result<World> World::restore(const World& base, std::span<const std::byte> delta) {
+    const std::uint64_t baseRoot = base.fullRoot();
+    Result<WorldState> state = readDelta(base.m_data->state, baseRoot, delta);
+    if (!state) return state.error();
+    auto data = std::make_unique<Data>();
+    data->state = std::move(*state);
+    return World(std::move(data));
 }
 
 const Events& World::step(std::span<const Command> commands, const StepResources& with) {

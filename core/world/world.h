@@ -125,6 +125,10 @@ class World {
     /// The same state from a snapshot. Every byte is checked: a sentence names what and where.
     static Result<World> restore(std::span<const std::byte> snapshot);
 
+    /// The same state from a delta and the world that it was made against, or one in the same
+    /// state. Every byte is checked: a sentence names what and where.
+    static Result<World> restore(const World& base, std::span<const std::byte> delta);
+
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
     World(const World&);
@@ -137,6 +141,10 @@ class World {
 
     /// An exact image of the state; see `core/state/snapshot.h` for its layout.
     [[nodiscard]] std::vector<std::byte> save() const;
+
+    /// The same as a difference from another world, which whoever restores it must have too: what
+    /// is equal, definitions for one, is not repeated. See `core/state/delta.h`.
+    [[nodiscard]] std::vector<std::byte> saveDelta(const World& base) const;
 
     /// Makes `into` the image of the world as it is, with the caches of its last step. Costs the
     /// copying of what moved, and of what else has changed since `into` was last made from this
