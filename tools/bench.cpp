@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "tools/bench_modes.h"
 #include "tools/clock.h"
 #include "tools/command.h"
 #include "tools/engines.h"
@@ -31,6 +32,9 @@ struct Options {
     std::uint64_t ticks = 0;  // 0: the scene's own
     int repeats = 6;
     std::string csv;
+    bool rollback = false;
+    bool scale = false;
+    bool quick = false;
     bool json = false;
 };
 
@@ -125,6 +129,8 @@ void showNotes(const std::vector<BenchResult>& rows) {
 Answer bench(const Options& options) {
     const Result<std::vector<int>> threads = parseThreads(options.threads);
     if (!threads) return threads.error();
+    if (options.rollback) return benchRollback(options.repeats, options.json);
+    if (options.scale) return benchScale(*threads, options.quick, options.json);
     const Result<std::vector<std::string>> engines = parseEngines(options.engines);
     if (!engines) return engines.error();
     std::vector<NamedScene> scenes;
@@ -184,7 +190,8 @@ void addBench(Menu& menu) {
                 "threads.\n"
                 "drift: energy won or lost by the end, as a share of weight times extent;\n"
                 "- where bodies came or went.");
-    sub->add_option("SCENE", o->scenes, "Scenes (default: the benchmark scenes)");
+    CLI::Option* scenes =
+        sub->add_option("SCENE", o->scenes, "Scenes (default: the benchmark scenes)");
     sub->add_option("--threads", o->threads, "Thread counts (default: 1,2)");
     std::string names;
     for (const std::string& name : benchEngineNames()) names += (names.empty() ? "" : ", ") + name;
@@ -193,7 +200,15 @@ void addBench(Menu& menu) {
         ->transform(wholeNumber(1, 1'000'000));
     sub->add_option("--repeat", o->repeats, "Timed runs of each row (default: 6)")
         ->transform(wholeNumber(1, 1000));
-    sub->add_option("--csv", o->csv, "Also write the rows to this file");
+    CLI::Option* csv = sub->add_option("--csv", o->csv, "Also write the rows to this file");
+    CLI::Option* rollback =
+        sub->add_flag("--rollback", o->rollback,
+                      "Instead: what checkpoints, going back 8 ticks, snapshots and hashes cost");
+    CLI::Option* scale = sub->add_flag(
+        "--scale", o->scale, "Instead: time and memory a body of worlds of 100 to 100,000");
+    for (CLI::Option* other : {rollback, scale}) other->excludes(scenes)->excludes(csv);
+    rollback->excludes(scale);
+    sub->add_flag("--quick", o->quick, "With --scale: up to 1,000 bodies alone")->needs(scale);
     sub->add_flag("--json", o->json, "Print one JSON document");
 }
 

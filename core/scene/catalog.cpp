@@ -75,7 +75,7 @@ std::vector<CatalogEntry> makeCatalog() {
         {"pyramid",
          "one large pyramid: one island, contacts alone",
          500,
-         {{"base", 100, 1, 200, boxSide}},
+         {{"base", 100, 1, 450, boxSide}},
          pyramid},
         {"rain",
          "ragdolls that come in groups, fall and go again: spawns, removals, soft joints",

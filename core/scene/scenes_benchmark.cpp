@@ -54,8 +54,9 @@ Scene pyramid(Values values) {
     const std::uint32_t base = count(values[0]);
     Scene scene;
     scene.sleep = false;
-    add(scene, bodyOf(BodyType::Static, {0.0f, -1.0f}, ShapeDef::box(100.0f, 1.0f)));
     const float half = 0.5f;
+    const float ground = std::max(100.0f, half * static_cast<float>(base));  // half its width
+    add(scene, bodyOf(BodyType::Static, {0.0f, -1.0f}, ShapeDef::box(ground, 1.0f)));
     addPyramid(scene, base, half, -half * static_cast<float>(base), 0.0f);
     fitLimits(scene);
     return scene;

@@ -336,6 +336,38 @@ TEST(Bench, SaysOnceWhatAnEngineLeavesOutAndWhetherEveryRepeatAgreed) {
     EXPECT_EQ(linesWith(ended.err, "capsule"), 1) << ended.err;
 }
 
+TEST(Bench, MeasuresGoingBackAndTheBytesOfASnapshot) {
+    const Json document = documentOf({"bench", "--rollback", "--repeat", "1"});
+    ASSERT_EQ(document["results"].size(), 3u);
+    for (const Json& row : document["results"]) {
+        EXPECT_EQ(row["same_hash"], true);
+        for (const char* key : {"checkpoint_us", "restore_us", "step_us", "rollback_8_ms",
+                                "motion_root_ns_a_body", "full_root_ns_a_body"})
+            EXPECT_GT(row[key].get<double>(), 0.0) << key;
+        // The design's bounds: 64 bytes a body and 48 a contact, definitions apart.
+        const double rest =
+            row["snapshot_bytes"].get<double>() - row["definition_bytes"].get<double>();
+        EXPECT_LE(rest, 64.0 * row["bodies"].get<double>() + 48.0 * row["contacts"].get<double>() +
+                            1024.0);
+    }
+    EXPECT_NEAR(document["results"][1]["bodies"].get<double>(), 901.0, 1.0);
+    EXPECT_LE(document["results"][1]["snapshot_bytes"].get<double>() -
+                  document["results"][1]["definition_bytes"].get<double>(),
+              220'000.0);
+}
+
+TEST(Bench, GrowsWorldsAndAgreesOnTheirHashes) {
+    const Json document = documentOf({"bench", "--scale", "--quick", "--threads", "1,2"});
+    std::map<std::string, std::string> hashes;
+    for (const Json& row : document["results"]) {
+        EXPECT_GT(row["ns_a_body_and_tick"].get<double>(), 0.0);
+        const auto [at, fresh] = hashes.emplace(row["scene"], row["hash"]);
+        EXPECT_EQ(at->second, row["hash"]) << row;
+    }
+    EXPECT_EQ(hashes.size(), 6u);
+    EXPECT_EQ(document["results"].size(), 12u);
+}
+
 TEST(Verify, SaysWhatAPeerLeavesOutOfTheScene) {
     const std::vector<std::string> words = {"verify", "mixed", "--ticks", "2", "--engine", "box2d"};
     EXPECT_FALSE(documentOf(words)["notes"].empty());

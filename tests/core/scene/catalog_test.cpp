@@ -352,9 +352,9 @@ TEST(Catalog, NamesWhatIsWrongAndWhatThereIsInstead) {
     EXPECT_EQ(sentenceFor("mixed:base=1"), "mixed has no parameter 'base'; it has none");
     EXPECT_EQ(sentenceFor("pyramid:base"), "pyramid: base needs a value, as in base=100");
     EXPECT_EQ(sentenceFor("pyramid:base=0"),
-              "pyramid: base must be a whole number from 1 to 200, is 0");
+              "pyramid: base must be a whole number from 1 to 450, is 0");
     EXPECT_EQ(sentenceFor("pyramid:base=2.5"),
-              "pyramid: base must be a whole number from 1 to 200, is 2.5");
+              "pyramid: base must be a whole number from 1 to 450, is 2.5");
     EXPECT_EQ(sentenceFor("chain:ratio=nan"),
               "chain: ratio must be a number from 1 to 1e+06, is nan");
     EXPECT_EQ(sentenceFor("pyramid:base=1e999"), "pyramid: base: '1e999' is not a number");
