@@ -28,6 +28,7 @@ struct Options {
     std::uint32_t substeps = 0;   // 0: the scene's own
     std::uint64_t hashEvery = 0;  // 0: never
     std::string snapshot;
+    bool explain = false;
     bool json = false;
 };
 
@@ -36,6 +37,7 @@ Status checkOptions(const Options& o) {
     if (o.engine == "huestep") return Done{};
     if (o.substeps != 0)
         return Error{"--substeps: " + o.engine + " takes 8 velocity and 3 position iterations"};
+    if (o.explain) return Error{"--explain: only huestep says how its steps are laid out"};
     if (o.threads != 1 || o.simd != "auto")
         return Error{"--threads and --simd: " + o.engine +
                      " has one thread and its own arithmetic"};
@@ -119,7 +121,7 @@ Answer run(const Options& options) {
     Accuracy accuracy(*start);
     if (const Status done = stepAll(**engine, named->script, options, accuracy, report); !done)
         return Error{options.scene + ": " + done.error().message};
-    report.close(**engine);
+    report.close(**engine, options.explain);
     showNotes((*engine)->notes());
 
     if (options.json)
@@ -155,6 +157,8 @@ void addRun(Menu& menu) {
     sub->add_option("--hash-every", o->hashEvery, "Print the hashes after every K ticks")
         ->transform(wholeNumber(1));
     sub->add_option("--snapshot", o->snapshot, "Write the state after the last tick to this file");
+    sub->add_flag("--explain", o->explain,
+                  "Also say how the last step was laid out: stages, islands, threads, bytes");
     sub->add_flag("--json", o->json, "Print one JSON document");
 }
 

@@ -24,6 +24,43 @@ double share(std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+constexpr std::size_t shownIslands = 5;
+
+/// Why an island was solved as it was.
+std::string reasonOf(const IslandView& island, const StepLayout& layout) {
+    const std::string own = std::to_string(island.contacts + island.joints);
+    const std::string most = std::to_string(layout.batchConstraints);
+    if (island.giant)
+        return "all threads: " + own + " constraints are more than a batch of " + most;
+    return "one thread, batch " + std::to_string(island.batch) + ": " + own +
+           " constraints, with others " + std::to_string(island.batchConstraints) + " of at most " +
+           most;
+}
+
+Json explanation(const StepLayout& layout) {
+    Json islands = Json::array();
+    for (std::size_t i = 0; i < std::min(shownIslands, layout.islands.size()); ++i) {
+        const IslandView& island = layout.islands[i];
+        islands.push_back({{"lowest_body", island.body},
+                           {"bodies", island.bodies},
+                           {"contacts", island.contacts},
+                           {"joints", island.joints},
+                           {"colours", island.colours},
+                           {"overflow", island.overflow},
+                           {"all_threads", island.giant},
+                           {"batch", island.batch},
+                           {"batch_constraints", island.batchConstraints},
+                           {"why", reasonOf(island, layout)}});
+    }
+    return {{"bytes_touched", layout.bytesTouched},
+            {"free_bodies", layout.freeBodies},
+            {"giants", layout.giants},
+            {"giant_colours", layout.colours},
+            {"giant_colours_shared", layout.sharedColours},
+            {"batch_constraints_most", layout.batchConstraints},
+            {"largest_islands", islands}};
+}
+
 }  // namespace
 
 StateCost measureState(const World& world) {
@@ -54,7 +91,7 @@ void RunReport::add(const StepReport& step) {
     inside->mostColours = std::max(inside->mostColours, step.colours);
 }
 
-void RunReport::close(const Engine& peer) {
+void RunReport::close(const Engine& peer, bool explain) {
     motionRoot = peer.hash();
     contacts = peer.contactCount();
     bodies = peer.motions().size();
@@ -64,6 +101,7 @@ void RunReport::close(const Engine& peer) {
     inside->fullRoot = huestep->world().fullRoot();
     inside->jointCount = huestep->world().joints().size();
     inside->waited = huestep->executor().waited();
+    if (explain) inside->layout = huestep->world().stepLayout();
     inside->state = measureState(huestep->world());
 }
 
@@ -100,6 +138,7 @@ Json RunReport::asJson() const {
     json["colours"] = inside->mostColours;
     json["overflow_share"] = share(inside->overflow, inside->constraints);
     json["waited_ms"] = milliseconds(inside->waited);
+    if (inside->layout) json["explain"] = explanation(*inside->layout);
     json["state"] = {{"bytes_a_body", sizeof(BodyMotion)},
                      {"bytes_a_contact", sizeof(ContactState)},
                      {"bytes_a_joint", sizeof(JointImpulses)},
@@ -152,7 +191,8 @@ void RunReport::printInside() const {
     std::printf("graph        %u islands, %u batches, at most %u colours, overflow %s %%\n",
                 in.last.islands, in.last.batches, in.mostColours,
                 number(100.0 * share(in.overflow, in.constraints)).c_str());
-    std::printf("waited, ms  %s (by thread)\n", waits.c_str());
+    std::printf("waited, ms  %s (by thread, in all)\n", waits.c_str());
+    if (in.layout) printLayout();
     std::printf(
         "state        %zu B a body, %zu a contact, %zu a joint; definitions %zu a body, "
         "%zu a shape, %zu a joint; snapshot %zu B\n",
@@ -160,6 +200,43 @@ void RunReport::printInside() const {
         sizeof(ShapeInfo), sizeof(JointInfo), in.state.snapshotBytes);
     std::printf("hash cost    motion root %s ns a body, full root %s ns a body\n",
                 number(in.state.motionRootNs).c_str(), number(in.state.fullRootNs).c_str());
+}
+
+/// The stages one a line with their share, then the largest islands and what was chosen for each.
+void RunReport::printLayout() const {
+    const RunInside& in = *inside;
+    const StepLayout& layout = *in.layout;
+    std::uint64_t all = 0;
+    for (const std::uint64_t ns : in.stageNanoseconds) all += ns;
+    std::printf("explained\n");
+    Table stages({"  stage", "ms a tick", "share, %"});
+    for (std::size_t s = 0; s < stageCount; ++s)
+        if (in.stageNanoseconds[s] != 0)
+            stages.add({"  " + std::string(nameOf(static_cast<Stage>(s))),
+                        number(share(in.stageNanoseconds[s], ticks) / nsPerMs),
+                        number(100.0 * share(in.stageNanoseconds[s], all))});
+    stages.print();
+    std::printf("  the last step goes over %s kB of records, each counted once: %s a body\n",
+                number(static_cast<double>(layout.bytesTouched) / 1e3).c_str(),
+                number(share(layout.bytesTouched, bodies)).c_str());
+    std::printf("  %u awake bodies touch nothing: exact flight, no solver\n", layout.freeBodies);
+    if (layout.giants > 0)
+        std::printf(
+            "  %u giant island%s: %u of %u colours are large enough to share, the rest on "
+            "one thread\n",
+            layout.giants, layout.giants == 1 ? "" : "s", layout.sharedColours, layout.colours);
+    if (layout.islands.empty()) return;
+    Table islands({"  island", "bodies", "contacts", "joints", "colours", "overflow", "solved by"});
+    for (std::size_t i = 0; i < std::min(shownIslands, layout.islands.size()); ++i) {
+        const IslandView& island = layout.islands[i];
+        islands.add({"  of body " + std::to_string(island.body), std::to_string(island.bodies),
+                     std::to_string(island.contacts), std::to_string(island.joints),
+                     std::to_string(island.colours), std::to_string(island.overflow),
+                     reasonOf(island, layout)});
+    }
+    islands.print();
+    if (layout.islands.size() > shownIslands)
+        std::printf("  and %zu smaller ones\n", layout.islands.size() - shownIslands);
 }
 
 }  // namespace huestep::tools

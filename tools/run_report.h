@@ -35,6 +35,7 @@ struct RunInside {
     std::uint32_t mostColours = 0;
     std::size_t jointCount = 0;
     std::vector<std::uint64_t> waited;  ///< ns, by worker
+    std::optional<StepLayout> layout;   ///< of the last step, where it is to be explained
     StateCost state;
 };
 
@@ -62,12 +63,13 @@ struct RunReport {
 
     static void print(const TickHash& hash, bool full);  ///< a line of text, as it comes
     void add(const StepReport& step);                    ///< after each step of Huestep
-    void close(const Engine& engine);                    ///< after the last step
+    void close(const Engine& engine, bool explain);      ///< after the last step
     [[nodiscard]] Json asJson() const;
     void print() const;
 
  private:
     void printInside() const;
+    void printLayout() const;
 };
 
 }  // namespace huestep::tools

@@ -229,6 +229,12 @@ void SoftStep::check(std::span<const BodyMotion> motions, std::span<const Bounds
                                blocks.end - blocks.begin);
 }
 
+std::uint64_t SoftStep::bytes() const {
+    const auto of = [](const auto& rows) { return rows.size() * sizeof(rows[0]); };
+    return of(m_bodies) + of(m_poses) + of(m_sources) + of(m_blocks) + of(m_joints) +
+           of(m_revolutes);
+}
+
 bool SoftStep::allKept(std::uint32_t block) const {
     std::int32_t all = -1;
     for (const std::int32_t kept : m_blocks[block].kept) all &= kept;

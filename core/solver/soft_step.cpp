@@ -37,13 +37,12 @@ struct Share {
     }
 };
 
-/// Whether a colour is worth a barrier: by its size alone, whoever runs it.
+}  // namespace
+
 bool isShared(const ColourRun& run) {
     return !isSerial(run.colour) &&
            run.contactCount + run.revoluteCount + jointsAsLanes * run.jointCount >= sharedFrom;
 }
-
-}  // namespace
 
 /// Constants of all passes over one batch.
 struct SoftStep::Pass {

@@ -51,6 +51,9 @@ struct Moved {
     std::vector<Leap> driven;           ///< kinematic bodies that moved; sorted
 };
 
+/// Whether a colour of a giant island is worth a barrier: by its size alone, whoever runs it.
+bool isShared(const ColourRun& run);
+
 /// What the solver reads and writes of the world.
 struct SolverWorld {
     std::span<const BodyInfo> bodies;
@@ -123,6 +126,9 @@ class SoftStep {
             }
         }
     }
+
+    /// Bytes of all rows and bodies that `solve` goes over.
+    [[nodiscard]] std::uint64_t bytes() const;
 
     /// Rows from contacts, joints and motions; all substeps; joints' impulses back into joints;
     /// contacts' stay in their rows. A giant batch goes through each stage on all threads; any

@@ -74,6 +74,35 @@ struct ContactView {
     int colour = -1;  ///< graph colour in the last step; −1: asleep; 255: overflow
 };
 
+/// An island as the last step solved it.
+struct IslandView {
+    BodyId body = 0;  ///< the lowest of its bodies
+    std::uint32_t bodies = 0;
+    std::uint32_t contacts = 0;
+    std::uint32_t joints = 0;
+    std::uint32_t colours = 0;   ///< that its own constraints have
+    std::uint32_t overflow = 0;  ///< its constraints beyond the last colour
+    /// Larger than a batch: all threads went through it together, a barrier a colour. Otherwise one
+    /// thread solved it, together with the other islands of its batch.
+    bool giant = false;
+    std::uint32_t batch = 0;             ///< its place among the step's batches
+    std::uint32_t batchConstraints = 0;  ///< of all islands of the batch
+};
+
+/// How the last step was laid out: what it chose follows from counts alone, never from threads.
+struct StepLayout {
+    std::vector<IslandView> islands;     ///< by constraints, the largest first, then by body
+    std::uint32_t freeBodies = 0;        ///< awake without a constraint: they fly exactly
+    std::uint32_t giants = 0;            ///< islands larger than a batch
+    std::uint32_t batchConstraints = 0;  ///< that a batch may have
+    std::uint32_t sharedColours = 0;     ///< colours of giants that are worth a barrier
+    std::uint32_t colours = 0;           ///< of giants in all
+    /// Bytes of the records that a step goes over, each counted once however often it is read: the
+    /// bodies', their bounds, candidate pairs, contacts' and joints' rows. A lower bound of what is
+    /// moved between memory and core; computed from counts and record sizes, not measured.
+    std::uint64_t bytesTouched = 0;
+};
+
 /// The first field in which two worlds differ, in the order of the state.
 struct Difference {
     std::string record;  ///< "body", "contact", "joint", "world", …
@@ -177,6 +206,10 @@ class World {
     [[nodiscard]] std::vector<ContactState> contacts() const;
     /// Empty after a restore or a copy until the next step: views come from the last step's work.
     [[nodiscard]] std::vector<ContactView> contactViews() const;
+
+    /// How the last step was laid out; empty before the first and after a restore or a copy, but
+    /// for a restored checkpoint. Costs a walk over all constraints.
+    [[nodiscard]] StepLayout stepLayout() const;
 
     /// Place of a body in `bodies()`, if it is there.
     [[nodiscard]] std::optional<std::uint32_t> find(BodyId id) const;

@@ -368,6 +368,20 @@ TEST(Bench, GrowsWorldsAndAgreesOnTheirHashes) {
     EXPECT_EQ(document["results"].size(), 12u);
 }
 
+TEST(Run, ExplainsHowItsLastStepWasLaidOut) {
+    const Ended ended = huestep({"run", "pyramid:base=34", "--ticks", "5", "--explain"});
+    EXPECT_EQ(linesWith(ended.out, "all threads: "), 1) << ended.out;
+    EXPECT_EQ(linesWith(ended.out, "kB of records"), 1) << ended.out;
+    const Json small =
+        documentOf({"run", "many_pyramids:rows=2,columns=4", "--ticks", "5", "--explain"});
+    const Json& explained = small["explain"];
+    EXPECT_EQ(explained["giants"], 0);
+    ASSERT_EQ(explained["largest_islands"].size(), 5u) << "of eight";
+    EXPECT_EQ(explained["largest_islands"][0]["bodies"], 55);
+    EXPECT_GT(explained["bytes_touched"].get<double>(), 440 * 32.0);
+    EXPECT_FALSE(documentOf({"run", "small:n=3", "--ticks", "2"}).contains("explain"));
+}
+
 TEST(Verify, SaysWhatAPeerLeavesOutOfTheScene) {
     const std::vector<std::string> words = {"verify", "mixed", "--ticks", "2", "--engine", "box2d"};
     EXPECT_FALSE(documentOf(words)["notes"].empty());
