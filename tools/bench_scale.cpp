@@ -20,7 +20,8 @@
 namespace huestep::tools {
 namespace {
 
-/// A world of some size, and when it is as it stays: rain has to fall first.
+/// A world of some size, and when it is as it stays: rain falls for 170 ticks before it lands, and
+/// a ragdoll is there for 320.
 struct Size {
     const char* scene;
     std::uint64_t settleTicks;
@@ -31,9 +32,9 @@ constexpr Size sizes[] = {
     {"pyramid:base=44", 60, true},
     {"pyramid:base=140", 60, false},
     {"pyramid:base=446", 30, false},
-    {"rain:floors=1,columns=2,group=5,period=60", 180, true},
-    {"rain:floors=2,columns=9,group=5,period=20", 200, true},
-    {"rain:floors=5,columns=36,group=5,period=8", 300, false},
+    {"rain:floors=1,columns=2,group=5,period=160", 330, true},
+    {"rain:floors=2,columns=9,group=5,period=36", 330, true},
+    {"rain:floors=5,columns=36,group=5,period=9", 330, false},
     {"many_pyramids:rows=3,columns=4,base=4", 60, true},
     {"many_pyramids:rows=10,columns=10,base=4", 60, true},
     {"many_pyramids:rows=16,columns=11,base=10", 60, false},
