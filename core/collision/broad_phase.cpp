@@ -20,7 +20,9 @@ constexpr std::uint32_t entryGrain = 512;
 constexpr std::size_t joinAllFrom = 16;       // a part of all shapes
 constexpr std::uint32_t joinSerially = 1024;  // entries: fewer are joined before a team is awake
 constexpr std::uint32_t sparseLevel = 16;     // entries: a level of so few is read whole
-constexpr float farthestTravel = 1000.0f;     // m: no fat box may outgrow the widest cell
+// What flies by many times its size a tick hits something before it comes where its box would
+// reach: in a crowd that is thrown about, long boxes would pair all with all.
+constexpr float farthestTravel = 1.0f;  // of its size
 
 float cellSize(int level) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(level + 127) << 23);
@@ -72,8 +74,9 @@ Bounds fattened(const Bounds& tight, Vec2 travel) {
     const float size = maxOf(tight.high.x - tight.low.x, tight.high.y - tight.low.y);
     const float margin = minOf(0.1f, 0.01f + 0.05f * size);
     Bounds fat = grown(tight, margin);
-    const float x = clampTo(travel.x, -farthestTravel, farthestTravel);
-    const float y = clampTo(travel.y, -farthestTravel, farthestTravel);
+    const float most = farthestTravel * size;
+    const float x = clampTo(travel.x, -most, most);
+    const float y = clampTo(travel.y, -most, most);
     (x < 0 ? fat.low.x : fat.high.x) += x;
     (y < 0 ? fat.low.y : fat.high.y) += y;
     return fat;
