@@ -17,7 +17,7 @@ constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
 constexpr std::uint32_t joinGrain = 128;
 constexpr std::uint32_t entryGrain = 512;
-constexpr std::size_t joinAllFrom = 16;       // a part of all shapes
+constexpr std::size_t joinAllFrom = 8;        // from an eighth of all shapes on
 constexpr std::uint32_t joinSerially = 1024;  // entries: fewer are joined before a team is awake
 constexpr std::uint32_t sparseLevel = 16;     // entries: a level of so few is read whole
 // What flies by many times its size a tick hits something before it comes where its box would
