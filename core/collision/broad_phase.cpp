@@ -226,7 +226,7 @@ void BroadPhase::rebuildAll(std::span<const Bounds> tight, std::span<const Vec2>
         }
     });
     sortEntries();
-    findLevels();
+    findLevels(proxies);
 }
 
 /// Sorts all entries by key: least significant digit first, over the bits in which keys differ.
@@ -261,12 +261,14 @@ void BroadPhase::sortEntries() {
     m_entries.swap(m_entryScratch);
 }
 
-void BroadPhase::findLevels() {
+void BroadPhase::findLevels(std::span<const ShapeProxy> proxies) {
     m_levels.clear();
     for (std::uint32_t i = 0; i < m_entries.size(); ++i) {
         const int level = static_cast<int>(m_entries[i].key >> 56) + lowestLevel;
-        if (m_levels.empty() || m_levels.back().level != level) m_levels.push_back({level, i, i});
+        if (m_levels.empty() || m_levels.back().level != level)
+            m_levels.push_back({level, i, i, false});
         m_levels.back().end = i + 1;
+        m_levels.back().hasFixed |= !proxies[m_entries[i].shape()].dynamic;
     }
 }
 
@@ -285,7 +287,7 @@ void BroadPhase::moveEntries(std::span<const std::uint32_t> moved,
     std::merge(m_entries.begin(), m_entries.end(), changed.begin(), changed.end(),
                m_entryScratch.begin(), before);
     m_entries.swap(m_entryScratch);
-    findLevels();
+    findLevels(proxies);
 }
 
 /// The box whose overlaps are wanted: highs, and lows negated.
@@ -335,6 +337,7 @@ void BroadPhase::findFixed(std::uint32_t shape, const Bounds& box,
                            std::vector<std::uint32_t>& out) const {
     const Entry mine = entryOf(shape, proxies[shape]);
     for (const Level& level : m_levels) {
+        if (!level.hasFixed) continue;
         visitOverlaps(level, box, [&](const Entry& other) {
             if (proxies[other.shape()].dynamic) return;
             if (mayPair(mine, other, proxies, forbidden)) out.push_back(other.shape());

@@ -93,6 +93,7 @@ class BroadPhase {
         int level = 0;
         std::uint32_t begin = 0;
         std::uint32_t end = 0;
+        bool hasFixed = false;  // a shape whose body is not dynamic
     };
 
     [[nodiscard]] Entry entryOf(std::uint32_t shape, const ShapeProxy& proxy) const;
@@ -103,7 +104,7 @@ class BroadPhase {
     void sortEntries();
     [[nodiscard]] bool mayPair(const Entry& a, const Entry& b, std::span<const ShapeProxy> proxies,
                                std::span<const ShapePair> forbidden) const;
-    void findLevels();
+    void findLevels(std::span<const ShapeProxy> proxies);
     template <class Visit>
     void visitOverlaps(const Level& level, const Bounds& box, Visit visit) const;
     void joinBlock(std::uint32_t begin, std::uint32_t end, std::span<const ShapeProxy> proxies,
