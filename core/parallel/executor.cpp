@@ -15,12 +15,11 @@ namespace {
 
 // A barrier costs about 100 ns among running threads and several µs through the kernel. So a
 // worker looks a while before it sleeps, unless there are more workers than cores: then whoever
-// looks keeps the one he waits for from running. Few looks, because other programs want the cores
-// too: with twice as many runnable threads as cores, 4,000 looks made two workers seven times
-// slower than one, 200 made them about as fast.
-// With the serial stages between two uses as short as they are now, 200 put the crew to sleep a
-// dozen times a tick: two threads took 1.47 ms for the tumbler where one took 1.42; with 1,000 they
-// take 0.91 where one takes 1.24.
+// looks keeps the one he waits for from running. How long is a matter of who else wants the cores.
+// The tumbler on two workers of two cores, where one takes 1.1 ms: with 200 looks 1.0 to 1.7 ms,
+// as serial stages put the crew to sleep a dozen times a tick, with 1,000 0.84 to 0.95; beside two
+// other busy threads 1.8 and 3.6 ms. There 4,000 looks made two workers seven times slower than
+// one.
 constexpr int looksBeforeSleep = 1000;
 
 void pauseBriefly() {
