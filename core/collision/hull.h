@@ -9,6 +9,11 @@
 
 namespace huestep {
 
+/// Vertices and edges are counted in int, arrays in std::size_t.
+constexpr std::size_t asIndex(int i) {
+    return static_cast<std::size_t>(i);
+}
+
 /// Points within `radius` of the convex hull of `count` vertices (1 to 8, counter-clockwise).
 /// `normals[i]` is the outward normal of the edge from vertex i to vertex i+1; a hull of two
 /// vertices has two edges with opposite normals, a hull of one has none.
@@ -58,9 +63,8 @@ HullT<Real> hullOf(const ShapeInfo& shape) {
     }
     if (hull.count < 2) return hull;
     for (int i = 0; i < hull.count; ++i) {
-        const auto edge = hull.vertices[static_cast<std::size_t>(hull.next(i))] -
-                          hull.vertices[static_cast<std::size_t>(i)];
-        hull.normals[static_cast<std::size_t>(i)] = normalized(perpRight(edge));
+        const auto edge = hull.vertices[asIndex(hull.next(i))] - hull.vertices[asIndex(i)];
+        hull.normals[asIndex(i)] = normalized(perpRight(edge));
     }
     return hull;
 }
@@ -101,7 +105,7 @@ inline Bounds boundsOf(const Hull& hull, const Pose& pose) {
     const LaneF<4> c = splat<4>(pose.q.c);
     const LaneF<4> s{-pose.q.s, pose.q.s, -pose.q.s, pose.q.s};
     const auto rotated = [&](int i) {
-        LaneF<4> v = loadLanes<4>(&hull.vertices[static_cast<std::size_t>(i)].x);
+        LaneF<4> v = loadLanes<4>(&hull.vertices[asIndex(i)].x);
         if (i + 1 == hull.count) v = __builtin_shufflevector(v, v, 0, 1, 0, 1);
         return c * v + s * __builtin_shufflevector(v, v, 1, 0, 3, 2);
     };

@@ -1,6 +1,6 @@
 #include "core/collision/manifold.h"
 
-#include "core/math/lanes.h"
+#include "core/collision/axes.h"
 
 namespace huestep {
 
@@ -9,10 +9,6 @@ namespace {
 // Cores nearer than this are treated as touching faces: the direction between two points that
 // nearly coincide is noise. A tenth of the 5 mm that the field calls the linear slop.
 constexpr double featureTolerance = 0.0005;
-
-constexpr std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
 
 constexpr std::uint16_t featureOf(int vertexA, int vertexB) {
     return static_cast<std::uint16_t>((vertexA << 8) | vertexB);
@@ -52,7 +48,7 @@ ManifoldT<Real> hullAndDisc(const HullT<Real>& a, const HullT<Real>& b, Vec2T<Re
     int best = 0;
     Real separation = dot(a.normals[0], center - a.vertices[0]);
     for (int i = 1; i < a.count; ++i) {
-        const Real s = dot(a.normals[at(i)], center - a.vertices[at(i)]);
+        const Real s = dot(a.normals[asIndex(i)], center - a.vertices[asIndex(i)]);
         if (s > separation) {
             separation = s;
             best = i;
@@ -61,8 +57,8 @@ ManifoldT<Real> hullAndDisc(const HullT<Real>& a, const HullT<Real>& b, Vec2T<Re
     if (separation - (a.radius + b.radius) > margin) return {};
 
     const int second = a.next(best);
-    const Vec2T<Real> v1 = a.vertices[at(best)];
-    const Vec2T<Real> v2 = a.vertices[at(second)];
+    const Vec2T<Real> v1 = a.vertices[asIndex(best)];
+    const Vec2T<Real> v2 = a.vertices[asIndex(second)];
     // Beyond an end of the edge the vertex is nearest. A centre inside the core has only faces;
     // a core of two vertices has no inside.
     if (a.count == 2 || separation > Real(featureTolerance)) {
@@ -74,61 +70,10 @@ ManifoldT<Real> hullAndDisc(const HullT<Real>& a, const HullT<Real>& b, Vec2T<Re
         }
     }
     ManifoldT<Real> m;
-    m.normal = a.normals[at(best)];
+    m.normal = a.normals[asIndex(best)];
     addPoint(m, center - separation * m.normal, center, separation - (a.radius + b.radius),
              a.radius, b.radius, best, 0);
     return m;
-}
-
-/// Four points as two columns.
-void loadVectors(const Vec2* from, LaneF<4>& x, LaneF<4>& y) {
-    const LaneF<4> low = loadLanes<4>(&from[0].x), high = loadLanes<4>(&from[2].x);
-    x = __builtin_shufflevector(low, high, 0, 2, 4, 6);
-    y = __builtin_shufflevector(low, high, 1, 3, 5, 7);
-}
-
-/// The edge of `reference` whose normal separates `other` the most, and by how much.
-template <class Real>
-struct Axis {
-    int edge = 0;
-    Real separation{0};
-};
-
-template <class Real>
-Axis<Real> bestAxis(const HullT<Real>& reference, const HullT<Real>& other) {
-    Axis<Real> best;
-    for (int i = 0; i < reference.count; ++i) {
-        const Vec2T<Real> n = reference.normals[at(i)];
-        const Vec2T<Real> v = reference.vertices[at(i)];
-        Real lowest = dot(n, other.vertices[0] - v);
-        for (int j = 1; j < other.count; ++j) {
-            lowest = minOf(lowest, dot(n, other.vertices[at(j)] - v));
-        }
-        if (i == 0 || lowest > best.separation) best = {i, lowest};
-    }
-    return best;
-}
-
-/// Four edges of the reference at a time, in lanes; the same numbers.
-template <>
-Axis<float> bestAxis(const HullT<float>& reference, const HullT<float>& other) {
-    Axis<float> best;
-    for (int first = 0; first < reference.count; first += 4) {
-        LaneF<4> nx, ny, vx, vy;
-        loadVectors(&reference.normals[at(first)], nx, ny);
-        loadVectors(&reference.vertices[at(first)], vx, vy);
-        const auto distances = [&](Vec2 w) {
-            return nx * (splat<4>(w.x) - vx) + ny * (splat<4>(w.y) - vy);
-        };
-        LaneF<4> lowest = distances(other.vertices[0]);
-        for (int j = 1; j < other.count; ++j) {
-            lowest = minLanes(lowest, distances(other.vertices[at(j)]));
-        }
-        for (int i = first; i < reference.count && i < first + 4; ++i) {
-            if (i == 0 || lowest[i - first] > best.separation) best = {i, lowest[i - first]};
-        }
-    }
-    return best;
 }
 
 /// The edge of `hull` that faces against `normal` the most.
@@ -137,7 +82,7 @@ int incidentEdge(const HullT<Real>& hull, Vec2T<Real> normal) {
     int best = 0;
     Real lowest = dot(hull.normals[0], normal);
     for (int i = 1; i < hull.count; ++i) {
-        const Real d = dot(hull.normals[at(i)], normal);
+        const Real d = dot(hull.normals[asIndex(i)], normal);
         if (d < lowest) {
             lowest = d;
             best = i;
@@ -162,16 +107,16 @@ void nearestToEdges(const HullT<Real>& a, const HullT<Real>& b, bool flipped, bo
                     Nearest<Real>& nearest) {
     for (int i = 0; i < a.count; ++i) {
         const int i2 = a.next(i);
-        const Vec2T<Real> v1 = a.vertices[at(i)];
-        const Vec2T<Real> edge = a.vertices[at(i2)] - v1;
+        const Vec2T<Real> v1 = a.vertices[asIndex(i)];
+        const Vec2T<Real> edge = a.vertices[asIndex(i2)] - v1;
         const Real edgeSquared = lengthSquared(edge);
         for (int j = 0; j < b.count; ++j) {
-            const Vec2T<Real> w = b.vertices[at(j)];
+            const Vec2T<Real> w = b.vertices[asIndex(j)];
             const Real t = dot(w - v1, edge);
             const bool before = t <= Real(0);
             const bool after = t >= edgeSquared;
             const Vec2T<Real> onEdge = before  ? v1
-                                       : after ? a.vertices[at(i2)]
+                                       : after ? a.vertices[asIndex(i2)]
                                                : v1 + (t / edgeSquared) * edge;
             const Real squared = lengthSquared(w - onEdge);
             if (found && !(squared < nearest.squared)) continue;
@@ -192,15 +137,15 @@ void nearestToEdges(const HullT<Real>& a, const HullT<Real>& b, bool flipped, bo
 template <class Real>
 ManifoldT<Real> clipEdges(const HullT<Real>& reference, int edge, const HullT<Real>& incident,
                           bool flipped, Real margin) {
-    const Vec2T<Real> normal = reference.normals[at(edge)];
+    const Vec2T<Real> normal = reference.normals[asIndex(edge)];
     const int r1 = edge;
     const int r2 = reference.next(edge);
     const int i1 = incidentEdge(incident, normal);
     const int i2 = incident.next(i1);
-    const Vec2T<Real> v1 = reference.vertices[at(r1)];
-    const Vec2T<Real> v2 = reference.vertices[at(r2)];
-    const Vec2T<Real> w1 = incident.vertices[at(i1)];
-    const Vec2T<Real> w2 = incident.vertices[at(i2)];
+    const Vec2T<Real> v1 = reference.vertices[asIndex(r1)];
+    const Vec2T<Real> v2 = reference.vertices[asIndex(r2)];
+    const Vec2T<Real> w1 = incident.vertices[asIndex(i1)];
+    const Vec2T<Real> w2 = incident.vertices[asIndex(i2)];
 
     // Along the reference edge; the incident edge runs the other way, so w2 comes first.
     const Vec2T<Real> tangent = perpLeft(normal);
@@ -277,38 +222,6 @@ ManifoldT<Real> hulls(const HullT<Real>& a, const HullT<Real>& b, Real margin) {
                    : clipEdges(a, axisA.edge, b, false, margin);
 }
 
-/// The hull as seen from another frame.
-template <class Real>
-HullT<Real> moved(const HullT<Real>& hull, const PoseT<Real>& pose) {
-    HullT<Real> out;
-    out.count = hull.count;
-    out.radius = hull.radius;
-    for (int i = 0; i < hull.count; ++i) {
-        out.vertices[at(i)] = transform(pose, hull.vertices[at(i)]);
-        out.normals[at(i)] = rotate(pose.q, hull.normals[at(i)]);
-    }
-    return out;
-}
-
-/// Two vectors at a time, in lanes; the same numbers.
-template <>
-HullT<float> moved(const HullT<float>& hull, const PoseT<float>& pose) {
-    HullT<float> out;
-    out.count = hull.count;
-    out.radius = hull.radius;
-    const LaneF<4> c = splat<4>(pose.q.c);
-    const LaneF<4> s{-pose.q.s, pose.q.s, -pose.q.s, pose.q.s};
-    const LaneF<4> p{pose.p.x, pose.p.y, pose.p.x, pose.p.y};
-    const auto rotated = [&](const LaneF<4>& v) {
-        return c * v + s * __builtin_shufflevector(v, v, 1, 0, 3, 2);
-    };
-    for (int i = 0; i < hull.count; i += 2) {
-        storeLanes<4>(&out.vertices[at(i)].x, p + rotated(loadLanes<4>(&hull.vertices[at(i)].x)));
-        storeLanes<4>(&out.normals[at(i)].x, rotated(loadLanes<4>(&hull.normals[at(i)].x)));
-    }
-    return out;
-}
-
 /// Whose business it is to push along a normal that leans over an end of a chain segment.
 enum class Pusher { Segment, Face, Neighbour };
 
@@ -338,7 +251,7 @@ Real heightOverNeighbour(const HullT<Real>& chain, const HullT<Real>& b, Vec2T<R
     const Vec2T<Real> face = chain.normals[atStart ? 2 : 3];
     Real lowest = dot(face, b.vertices[0] - vertex);
     for (int j = 1; j < b.count; ++j) {
-        lowest = minOf(lowest, dot(face, b.vertices[at(j)] - vertex));
+        lowest = minOf(lowest, dot(face, b.vertices[asIndex(j)] - vertex));
     }
     return lowest;
 }
@@ -389,7 +302,7 @@ ManifoldT<Real> chainAndHull(const HullT<Real>& chain, const HullT<Real>& b, Rea
     Vec2T<Real> sum;
     Real face{0};
     for (int j = 0; j < b.count; ++j) {
-        const Vec2T<Real> w = b.vertices[at(j)] - chain.vertices[0];
+        const Vec2T<Real> w = b.vertices[asIndex(j)] - chain.vertices[0];
         const Real height = dot(chain.normals[0], w);
         sum += w;
         face = j == 0 ? height : minOf(face, height);
@@ -418,7 +331,7 @@ ManifoldT<Real> chainAndHull(const HullT<Real>& chain, const HullT<Real>& b, Rea
         }
     }
     if (!flipped) return clipToFace(chain, b, margin);
-    const Vec2T<Real> normal = -b.normals[at(axis.edge)];
+    const Vec2T<Real> normal = -b.normals[asIndex(axis.edge)];
     const Pusher pusher = pusherOf(chain, normal);
     if (pusher == Pusher::Segment) return clipEdges(b, axis.edge, chain, true, margin);
     if (pusher == Pusher::Neighbour && heightOverNeighbour(chain, b, normal) > face) return {};

@@ -1,5 +1,7 @@
 #include "core/collision/sweep.h"
 
+#include "core/collision/axes.h"
+
 namespace huestep {
 
 namespace {
@@ -10,37 +12,24 @@ constexpr int mostLooks = 48;
 // Cores this deep in each other by their faces may yet be apart: two segments end to end.
 constexpr float faceTolerance = 0.0001f;  // m
 
-constexpr std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
-
-float absolute(float v) {
-    return v < 0.0f ? -v : v;
-}
-
 /// The face of `a` over which `b` is highest, and how high; nothing where `a` has no faces.
 void highestOverFaces(const Hull& a, const Hull& b, bool flipped, bool& found, Separation& best) {
     if (a.count < 2) return;
-    for (int i = 0; i < a.count; ++i) {
-        const Vec2 n = a.normals[at(i)];
-        float lowest = dot(n, b.vertices[0] - a.vertices[at(i)]);
-        for (int j = 1; j < b.count; ++j) {
-            lowest = minOf(lowest, dot(n, b.vertices[at(j)] - a.vertices[at(i)]));
-        }
-        if (found && !(lowest > best.distance)) continue;
-        found = true;
-        best = {lowest, flipped ? -n : n};
-    }
+    const Axis<float> axis = bestAxis(a, b);
+    if (found && !(axis.separation > best.distance)) return;
+    found = true;
+    const Vec2 n = a.normals[asIndex(axis.edge)];
+    best = {axis.separation, flipped ? -n : n};
 }
 
 /// The shortest way from an edge of `a` to a vertex of `b`.
 void nearestVertex(const Hull& a, const Hull& b, bool flipped, bool& found, Vec2& shortest) {
     for (int i = 0; i < a.count; ++i) {
-        const Vec2 v = a.vertices[at(i)];
-        const Vec2 edge = a.vertices[at(a.next(i))] - v;
+        const Vec2 v = a.vertices[asIndex(i)];
+        const Vec2 edge = a.vertices[asIndex(a.next(i))] - v;
         const float squared = lengthSquared(edge);
         for (int j = 0; j < b.count; ++j) {
-            const Vec2 w = b.vertices[at(j)] - v;
+            const Vec2 w = b.vertices[asIndex(j)] - v;
             const float t = squared > 0.0f ? clampTo(dot(w, edge) / squared, 0.0f, 1.0f) : 0.0f;
             const Vec2 way = w - t * edge;
             if (found && !(lengthSquared(way) < lengthSquared(shortest))) continue;
@@ -53,12 +42,7 @@ void nearestVertex(const Hull& a, const Hull& b, bool flipped, bool& found, Vec2
 }  // namespace
 
 Separation separationOf(const Hull& a, const Hull& b, const Pose& relative) {
-    Hull there;
-    there.count = b.count;
-    for (int i = 0; i < b.count; ++i) {
-        there.vertices[at(i)] = transform(relative, b.vertices[at(i)]);
-        there.normals[at(i)] = rotate(relative.q, b.normals[at(i)]);
-    }
+    const Hull there = moved(b, relative);
     Separation best;
     bool faces = false;
     highestOverFaces(a, there, false, faces, best);
@@ -87,7 +71,7 @@ Pose relativeAt(const SweptHull& a, const SweptHull& b, float t) {
 
 std::optional<float> timeOfApproach(const SweptHull& a, const SweptHull& b, float target,
                                     float tolerance, float until) {
-    const float swing = absolute(a.turn) * a.reach + absolute(b.turn) * b.reach;
+    const float swing = absoluteOf(a.turn) * a.reach + absoluteOf(b.turn) * b.reach;
     float t = 0.0f;
     for (int look = 0; look < mostLooks; ++look) {
         const Pose relative = relativeAt(a, b, t);

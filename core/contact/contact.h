@@ -45,6 +45,12 @@ struct alignas(64) Contact {
 
 static_assert(sizeof(Contact) == 192, "three cache lines");
 
+/// Brings a contact nearer that is read soon.
+inline void prefetch(const Contact& contact) {
+    const char* from = reinterpret_cast<const char*>(&contact);
+    for (std::size_t line = 0; line < sizeof(Contact); line += 64) __builtin_prefetch(from + line);
+}
+
 /// The impulses of a contact as the next step starts from them.
 struct ContactImpulses {
     std::array<float, 2> normal{};   ///< N·s, ≥ 0

@@ -27,13 +27,9 @@ bool mayRecycle(const Contact& contact, const NarrowPhaseInput& in) {
     const Pose made = contact.relative();
     const Rotation turned = relative(made.q, now.q);
     if (!(contact.row.roundness * (1.0f - turned.c) <= recycleLift)) return false;
-    const float swing = contact.row.reach * (turned.s < 0.0f ? -turned.s : turned.s);
+    const float swing = contact.row.reach * absoluteOf(turned.s);
     const float room = contact.row.slack - swing;
     return room > 0.0f && lengthSquared(now.p - made.p) < room * room;
-}
-
-float inverseOf(float k) {
-    return k > 0.0f ? 1.0f / k : 0.0f;
 }
 
 /// Everything that follows from a manifold made at `made`, but for the impulses; turned into the
@@ -55,7 +51,7 @@ void setManifold(Contact& contact, const Pose& made, const Manifold& manifold) {
     row.normalX = n.x;
     row.normalY = n.y;
     // A single point is a vertex: it slides over the other shape as that turns.
-    const float slack = row.slack < 0.0f ? -row.slack : row.slack;
+    const float slack = absoluteOf(row.slack);
     row.slack = manifold.count < 2 ? -slack : slack;
     const float m = contact.inverseMassA + contact.inverseMassB;
     for (std::size_t i = 0; i < 2; ++i) {
@@ -73,9 +69,9 @@ void setManifold(Contact& contact, const Pose& made, const Manifold& manifold) {
         const float rnA = cross(rA, n), rnB = cross(rB, n);
         const float rtA = dot(rA, n), rtB = dot(rB, n);  // r × t = −r·n for t = (ny, −nx)
         p.normalMass =
-            inverseOf(m + row.inverseInertiaA * rnA * rnA + row.inverseInertiaB * rnB * rnB);
+            inverseOrZero(m + row.inverseInertiaA * rnA * rnA + row.inverseInertiaB * rnB * rnB);
         p.tangentMass =
-            inverseOf(m + row.inverseInertiaA * rtA * rtA + row.inverseInertiaB * rtB * rtB);
+            inverseOrZero(m + row.inverseInertiaA * rtA * rtA + row.inverseInertiaB * rtB * rtB);
     }
 }
 

@@ -14,7 +14,6 @@ struct Link {
     std::uint32_t b = 0;
     std::uint32_t source = 0;
     bool revolute = false;  ///< a joint that is solved in lanes
-    friend bool operator==(const Link&, const Link&) = default;
 };
 
 /// Union-find whose representative is always the lowest place of the set, so that the result does

@@ -51,7 +51,7 @@ struct PointPart {
         const float k12 = -(b.iA * rA.x * rA.y) - b.iB * rB.x * rB.y;
         const float k22 = m + b.iA * rA.x * rA.x + b.iB * rB.x * rB.x;
         const float determinant = k11 * k22 - k12 * k12;
-        const float inverse = determinant > 0.0f ? 1.0f / determinant : 0.0f;
+        const float inverse = inverseOrZero(determinant);
         const Vec2 rhs = anchorVelocity(b, rA, rB) + soft.biasRate * error;
         const Vec2 rigid{inverse * (k22 * rhs.x - k12 * rhs.y),
                          inverse * (k11 * rhs.y - k12 * rhs.x)};
@@ -68,10 +68,7 @@ struct PointPart {
 /// The relative angle of two bodies, free to turn: rows about the joint's axis.
 /// Effective mass 1 / (iA + iB).
 struct AxisPart {
-    static float mass(const JointBodies& b) {
-        const float k = b.iA + b.iB;
-        return k > 0.0f ? 1.0f / k : 0.0f;
-    }
+    static float mass(const JointBodies& b) { return inverseOrZero(b.iA + b.iB); }
     static float rate(const JointBodies& b) { return b.wB - b.wA; }
     static void apply(JointBodies& b, float l) { applyAngular(b, l); }
 };
@@ -84,8 +81,7 @@ struct LinePart {
     [[nodiscard]] float mass(const JointBodies& b) const {
         const float crossA = cross(rA, u);
         const float crossB = cross(rB, u);
-        const float k = b.mA + b.mB + b.iA * crossA * crossA + b.iB * crossB * crossB;
-        return k > 0.0f ? 1.0f / k : 0.0f;
+        return inverseOrZero(b.mA + b.mB + b.iA * crossA * crossA + b.iB * crossB * crossB);
     }
     [[nodiscard]] float rate(const JointBodies& b) const {
         return dot(u, anchorVelocity(b, rA, rB));
@@ -120,7 +116,7 @@ struct FixedPart {
     static void solve(JointBodies& b, Vec2 rA, Vec2 rB, Vec2 error, float angle,
                       const Softness& soft, Vec2& impulse, float& twist) {
         const float m = b.mA + b.mB;
-        const float inverseMass = m > 0.0f ? 1.0f / m : 0.0f;
+        const float inverseMass = inverseOrZero(m);
         const float angleMass = AxisPart::mass(b);
         const Vec2 armA = perpLeft(rA), armB = perpLeft(rB);
         const Vec2 coupling = b.iA * armA + b.iB * armB;

@@ -80,6 +80,15 @@ constexpr Real maxOf(Real a, Real b) {
     return a > b ? a : b;
 }
 template <class Real>
+constexpr Real absoluteOf(Real v) {
+    return v < Real(0) ? -v : v;
+}
+/// 1/v of what is above 0; else 0, as the mass of what nothing can move.
+template <class Real>
+constexpr Real inverseOrZero(Real v) {
+    return v > Real(0) ? Real(1) / v : Real(0);
+}
+template <class Real>
 constexpr Real clampTo(Real v, Real low, Real high) {
     return v < low ? low : (v > high ? high : v);
 }

@@ -20,7 +20,7 @@ void overRange(Executor* executor, std::size_t count, std::uint32_t grain, F&& f
 template <class F>
 void overBlocks(Executor* executor, std::size_t count, std::uint32_t grain, F&& f) {
     const auto n = static_cast<std::uint32_t>(count);
-    if (executor != nullptr && executor->threads() > 1 && n > grain) {
+    if (executor != nullptr && executor->threads() > 1) {
         executor->forBlocks(n, grain, f);
     } else {
         for (std::uint32_t begin = 0; begin < n; begin += grain) {

@@ -57,10 +57,9 @@ BodyMotion freeFlight(const BodyMotion& motion, const BodyInfo& info, const Body
 /// Whether a point of the body may have gone farther than its stride: a bound that needs no root.
 /// A body that goes round and round is seen by its spin, rad over the step.
 bool leaps(const Pose& from, const Pose& to, float spin, const Stride& stride) {
-    const auto size = [](float v) { return v < 0.0f ? -v : v; };
-    const float chord = size(to.q.c - from.q.c) + size(to.q.s - from.q.s);
-    const float way = size(to.p.x - from.p.x) + size(to.p.y - from.p.y);
-    return way + stride.reach * maxOf(chord, size(spin)) > stride.most;
+    const float chord = absoluteOf(to.q.c - from.q.c) + absoluteOf(to.q.s - from.q.s);
+    const float way = absoluteOf(to.p.x - from.p.x) + absoluteOf(to.p.y - from.p.y);
+    return way + stride.reach * maxOf(chord, absoluteOf(spin)) > stride.most;
 }
 
 /// What the bodies of one block of work did.

@@ -91,7 +91,6 @@ void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range p
         m_poses[place] = {motion.position.x, motion.position.y, motion.rotation.c,
                           motion.rotation.s};
         Source source;
-        source.inverseMass = info.inverseMass;
         source.inverseInertia = info.inverseInertia;
         if (info.dynamic()) {
             source.acceleration = info.gravityScale * world.gravity;
@@ -121,12 +120,12 @@ JointRow SoftStep::jointRow(const SolverWorld& world, std::uint32_t joint,
                                 world.motions[bodies.a].pose(), world.motions[bodies.b].pose(), h);
     row.bodyA = info.kind() == JointKind::Mouse ? fixedWorld : places.a;
     row.bodyB = places.b;
-    const Source& a = m_sources[static_cast<std::size_t>(readPlace(row.bodyA))];
-    const Source& b = m_sources[static_cast<std::size_t>(readPlace(row.bodyB))];
-    row.mA = a.inverseMass;
-    row.iA = a.inverseInertia;
-    row.mB = b.inverseMass;
-    row.iB = b.inverseInertia;
+    const auto a = static_cast<std::size_t>(readPlace(row.bodyA));
+    const auto b = static_cast<std::size_t>(readPlace(row.bodyB));
+    row.mA = m_bodies[a].inverseMass;
+    row.iA = m_sources[a].inverseInertia;
+    row.mB = m_bodies[b].inverseMass;
+    row.iB = m_sources[b].inverseInertia;
     return row;
 }
 
@@ -155,11 +154,7 @@ void SoftStep::prepareRevolutes(const Plan& plan, const SolverWorld& world, Rang
 void SoftStep::prefetchContacts(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
     for (std::uint32_t at = block * blockLanes; at < (block + 1) * blockLanes; ++at) {
         const std::uint32_t place = plan.contactOfLane[at];
-        if (place == none) continue;
-        const char* from = reinterpret_cast<const char*>(&world.contacts[place]);
-        for (std::size_t line = 0; line < sizeof(Contact); line += 64) {
-            __builtin_prefetch(from + line);
-        }
+        if (place != none) prefetch(world.contacts[place]);
     }
 }
 

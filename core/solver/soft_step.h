@@ -144,7 +144,7 @@ class SoftStep {
  private:
     /// What rows and passes need of a body beside its `SolverBody`, by solver place.
     struct Source {
-        float inverseMass = 0, inverseInertia = 0;
+        float inverseInertia = 0;
         Vec2 acceleration;                          // m/s²
         float angularAcceleration = 0;              // rad/s²
         float linearFactor = 1, angularFactor = 1;  // of damping, a substep

@@ -28,11 +28,11 @@ Contact contactOf(const ShapePair& pair, const Shapes& known, const WorldState& 
     c.placeB = pair.b;
     c.bodyA = known.proxies[pair.a].body;
     c.bodyB = known.proxies[pair.b].body;
-    c.row.slack = minOf(recycleMost, recyclePart * minOf(known.sizes[pair.a], known.sizes[pair.b]));
-    ContactFields<float>& row = c.row;
     c.inverseMassA = state.bodies[c.bodyA].inverseMass;
-    row.inverseInertiaA = state.bodies[c.bodyA].inverseInertia;
     c.inverseMassB = state.bodies[c.bodyB].inverseMass;
+    ContactFields<float>& row = c.row;
+    row.slack = minOf(recycleMost, recyclePart * minOf(known.sizes[pair.a], known.sizes[pair.b]));
+    row.inverseInertiaA = state.bodies[c.bodyA].inverseInertia;
     row.inverseInertiaB = state.bodies[c.bodyB].inverseInertia;
     row.reach = maxOf(known.reach[c.bodyA], known.reach[c.bodyB]);
     row.roundness = maxOf(a.radius, b.radius);
@@ -40,8 +40,7 @@ Contact contactOf(const ShapePair& pair, const Shapes& known, const WorldState& 
     row.restitution = maxOf(a.restitution, b.restitution);
     row.rollingResistance = maxOf(a.rollingResistance, b.rollingResistance) * row.roundness;
     row.tangentSpeed = a.tangentSpeed + b.tangentSpeed;
-    const float k = row.inverseInertiaA + row.inverseInertiaB;
-    row.rollingMass = k > 0.0f ? 1.0f / k : 0.0f;
+    row.rollingMass = inverseOrZero(row.inverseInertiaA + row.inverseInertiaB);
     return c;
 }
 
@@ -143,12 +142,29 @@ void World::Data::fetchImpulses(Executor* executor) {
               });
 }
 
-void World::Data::collideAll(Simd simd, Executor* executor) {
-    Accelerators& acc = accelerators;
-    const NarrowPhaseInput in = narrowPhaseInput();
-    acc.freshLanes.clear();
-    // What one block of work found: which contacts ended or began, and whether any sleeper is
-    // touched by what is awake.
+namespace {
+
+/// The collide stage at work: each worker notes what its block of work found, and what the world
+/// shares is changed in the order of blocks once all are done.
+class Collide {
+ public:
+    Collide(World::Data& world, Simd simd, Executor* executor)
+        : m_world(world),
+          m_acc(world.accelerators),
+          m_in(world.narrowPhaseInput()),
+          m_simd(simd),
+          m_executor(executor),
+          m_looked(world.anyAsleep ? m_acc.candidates.size() : 0, 0) {
+        m_acc.freshLanes.clear();
+    }
+
+    void lookAtRows();
+    /// Those that no row holds and that nobody has looked at yet.
+    void lookAtCandidates();
+    /// Whether anybody awake touches a sleeper, of what was found since this was last asked.
+    bool takeDisturbed() { return std::exchange(m_disturbs, false); }
+
+ private:
     struct Findings {
         std::uint32_t recycled = 0;
         std::vector<std::uint32_t> fresh;                      // lanes
@@ -156,148 +172,171 @@ void World::Data::collideAll(Simd simd, Executor* executor) {
         std::vector<std::pair<std::uint32_t, Contact>> begun;  // with the candidate's place
         bool disturbs = false;
     };
-    const auto activityOfBoth = [&](const Contact& contact) {
-        return static_cast<std::uint8_t>(activity[contact.bodyA] | activity[contact.bodyB]);
-    };
-    const auto activityOfLane = [&](std::uint32_t lane) {
-        const ConstraintPlaces bodies = acc.solver.bodiesOf(lane);
-        return static_cast<std::uint8_t>(activity[bodies.a] | activity[bodies.b]);
-    };
-    bool disturbs = false;
-    const auto collect = [&](std::vector<Findings>& findings) {
-        for (Findings& f : findings) {
-            report.recycled += f.recycled;
-            disturbs |= f.disturbs;
-            acc.freshLanes.insert(acc.freshLanes.end(), f.fresh.begin(), f.fresh.end());
-            for (const std::uint32_t contact : f.ended) {
-                const Contact& c = acc.contacts[contact];
-                const auto at = std::lower_bound(
-                    acc.candidates.begin(), acc.candidates.end(), ShapePair{c.placeA, c.placeB},
-                    [](const Candidate& x, const ShapePair& pair) { return x.pair < pair; });
-                at->contact = none;
-                events.ends.push_back(changeOf(c));
-                dropContact(contact);
-            }
-            for (const auto& [candidate, contact] : f.begun) {
-                acc.candidates[candidate].contact = addContact(contact);
-                events.begins.push_back(changeOf(contact));
-            }
-        }
-    };
-    const auto lookAt = [&](std::uint32_t place, ContactUpdate update, Findings& mine) {
-        const Contact& contact = acc.contacts[place];
-        acc.contactStamps[place] = stamp;
-        mine.recycled += update == ContactUpdate::Recycled;
-        if (contact.pointCount == 0) {
-            mine.ended.push_back(place);
-        } else if (anyAsleep) {
-            const std::uint8_t both = activityOfBoth(contact);
-            mine.disturbs |= isActive(both) && isAsleep(both);
-        }
-    };
 
-    if (acc.rowsHold) {
-        const std::uint32_t blocks = acc.solver.blockCount();
-        auto findings = perBlock<Findings>(blocks, blockGrain);
-        overBlocks(executor, blocks, blockGrain, [&](std::uint32_t begin, std::uint32_t end) {
-            Findings& mine = findings[begin / blockGrain];
-            acc.solver.check(state.motions, acc.tight, simd, {begin, end});
-            // Contacts lie anywhere: first whom to look at, so that they are on their way.
-            std::array<std::uint32_t, blockGrain * blockLanes> renewed{};
-            std::size_t renewedCount = 0;
-            for (std::uint32_t block = begin; block < end; ++block) {
-                if (!anyAsleep && acc.solver.allKept(block)) {
-                    mine.recycled += blockLanes;
-                    continue;
-                }
-                for (std::uint32_t lane = block * blockLanes; lane < (block + 1) * blockLanes;
-                     ++lane) {
-                    const std::uint32_t place = acc.plan.contactOfLane[lane];
-                    if (place == none) continue;
-                    const std::uint8_t both =
-                        anyAsleep ? activityOfLane(lane) : std::uint8_t{movesNow};
-                    if (!isActive(both)) {
-                        // It fell asleep; who wakes it looks at the contact alone.
-                        setImpulses(acc.contacts[place], acc.solver.impulses(lane));
-                        acc.contactStamps[place] = stamp;
-                        acc.solver.dropLane(lane);
-                        acc.inLanes[place] = 0;
-                    } else if (acc.solver.isKept(lane)) {
-                        ++mine.recycled;
-                        mine.disturbs |= isAsleep(both);
-                    } else {
-                        renewed[renewedCount++] = lane;
-                        __builtin_prefetch(&acc.contacts[place]);
-                        __builtin_prefetch(&acc.contacts[place].points[0]);
-                        __builtin_prefetch(&acc.contacts[place].points[1].tangentImpulse);
-                    }
-                }
-            }
-            for (std::size_t k = 0; k < renewedCount; ++k) {
-                const std::uint32_t lane = renewed[k];
-                const std::uint32_t place = acc.plan.contactOfLane[lane];
-                Contact& contact = acc.contacts[place];
-                if (contact.pointCount == 0) continue;  // it ended with its pair
-                setImpulses(contact, acc.solver.impulses(lane));
-                mine.fresh.push_back(lane);
-                lookAt(place, renewContact(contact, in), mine);
-            }
-        });
-        collect(findings);
+    [[nodiscard]] std::uint8_t activityOf(std::uint32_t bodyA, std::uint32_t bodyB) const {
+        return static_cast<std::uint8_t>(m_world.activity[bodyA] | m_world.activity[bodyB]);
     }
+    [[nodiscard]] bool isRenewed(std::uint32_t lane, Findings& mine) const;
+    void renew(std::uint32_t lane, Findings& mine) const;
+    void lookAt(std::uint32_t candidate, Findings& mine);
+    void note(std::uint32_t place, ContactUpdate update, Findings& mine) const;
+    void collect(const std::vector<Findings>& findings);
 
-    const std::size_t count = acc.candidates.size();
-    const std::uint8_t nobody = 0;
-    std::vector<std::uint8_t> looked(anyAsleep ? count : 0, 0);
-    bool woke = false;
+    World::Data& m_world;
+    Accelerators& m_acc;
+    NarrowPhaseInput m_in;
+    Simd m_simd;
+    Executor* m_executor;
+    std::vector<std::uint8_t> m_looked;  // by candidate; empty where nobody sleeps
+    bool m_disturbs = false;
+};
+
+/// Notes what became of a contact.
+void Collide::note(std::uint32_t place, ContactUpdate update, Findings& mine) const {
+    const Contact& contact = m_acc.contacts[place];
+    m_acc.contactStamps[place] = m_world.stamp;
+    mine.recycled += update == ContactUpdate::Recycled;
+    if (contact.pointCount == 0) {
+        mine.ended.push_back(place);
+    } else {
+        const std::uint8_t both = activityOf(contact.bodyA, contact.bodyB);
+        mine.disturbs |= isActive(both) && isAsleep(both);
+    }
+}
+
+void Collide::collect(const std::vector<Findings>& findings) {
+    Events& events = m_world.events;
+    for (const Findings& f : findings) {
+        m_world.report.recycled += f.recycled;
+        m_disturbs |= f.disturbs;
+        m_acc.freshLanes.insert(m_acc.freshLanes.end(), f.fresh.begin(), f.fresh.end());
+        for (const std::uint32_t contact : f.ended) {
+            const Contact& c = m_acc.contacts[contact];
+            const auto at = std::lower_bound(
+                m_acc.candidates.begin(), m_acc.candidates.end(), ShapePair{c.placeA, c.placeB},
+                [](const Candidate& x, const ShapePair& pair) { return x.pair < pair; });
+            at->contact = none;
+            events.ends.push_back(m_world.changeOf(c));
+            m_world.dropContact(contact);
+        }
+        for (const auto& [candidate, contact] : f.begun) {
+            m_acc.candidates[candidate].contact = m_world.addContact(contact);
+            events.begins.push_back(m_world.changeOf(contact));
+        }
+    }
+}
+
+/// Whether the contact of a lane needs a new manifold.
+bool Collide::isRenewed(std::uint32_t lane, Findings& mine) const {
+    const std::uint32_t place = m_acc.plan.contactOfLane[lane];
+    if (place == none) return false;
+    if (m_world.anyAsleep) {
+        const ConstraintPlaces bodies = m_acc.solver.bodiesOf(lane);
+        const std::uint8_t both = activityOf(bodies.a, bodies.b);
+        if (!isActive(both)) {
+            // It fell asleep; who wakes it looks at the contact alone.
+            setImpulses(m_acc.contacts[place], m_acc.solver.impulses(lane));
+            m_acc.contactStamps[place] = m_world.stamp;
+            m_acc.solver.dropLane(lane);
+            m_acc.inLanes[place] = 0;
+            return false;
+        }
+        mine.disturbs |= m_acc.solver.isKept(lane) && isAsleep(both);
+    }
+    mine.recycled += m_acc.solver.isKept(lane);
+    return !m_acc.solver.isKept(lane);
+}
+
+void Collide::renew(std::uint32_t lane, Findings& mine) const {
+    const std::uint32_t place = m_acc.plan.contactOfLane[lane];
+    Contact& contact = m_acc.contacts[place];
+    if (contact.pointCount == 0) return;  // it ended with its pair
+    setImpulses(contact, m_acc.solver.impulses(lane));
+    mine.fresh.push_back(lane);
+    note(place, renewContact(contact, m_in), mine);
+}
+
+void Collide::lookAtRows() {
+    const std::uint32_t blocks = m_acc.solver.blockCount();
+    auto findings = perBlock<Findings>(blocks, blockGrain);
+    overBlocks(m_executor, blocks, blockGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        Findings& mine = findings[begin / blockGrain];
+        m_acc.solver.check(m_world.state.motions, m_acc.tight, m_simd, {begin, end});
+        // Contacts lie anywhere: first whom to look at, so that they are on their way.
+        std::array<std::uint32_t, blockGrain * blockLanes> renewed{};
+        std::size_t count = 0;
+        for (std::uint32_t block = begin; block < end; ++block) {
+            if (!m_world.anyAsleep && m_acc.solver.allKept(block)) {
+                mine.recycled += blockLanes;
+                continue;
+            }
+            for (std::uint32_t lane = block * blockLanes; lane < (block + 1) * blockLanes; ++lane) {
+                if (!isRenewed(lane, mine)) continue;
+                renewed[count++] = lane;
+                prefetch(m_acc.contacts[m_acc.plan.contactOfLane[lane]]);
+            }
+        }
+        for (std::size_t k = 0; k < count; ++k) renew(renewed[k], mine);
+    });
+    collect(findings);
+}
+
+void Collide::lookAt(std::uint32_t candidate, Findings& mine) {
+    const auto [pair, place] = m_acc.candidates[candidate];
+    const std::uint32_t bodyA = m_acc.shapes.proxies[pair.a].body;
+    const std::uint32_t bodyB = m_acc.shapes.proxies[pair.b].body;
+    const std::uint8_t both = activityOf(bodyA, bodyB);
+    // What sleeps from its start is looked at once, so that its islands are known.
+    if (!isActive(both) && (both & newToSleep) == 0) return;
+    if (!m_looked.empty()) {
+        if (m_looked[candidate] != 0) return;
+        m_looked[candidate] = 1;
+    }
+    if (place != none) {
+        note(place, updateContact(m_acc.contacts[place], m_in), mine);
+        return;
+    }
+    const Manifold manifold = manifoldOf(bodyA, bodyB, pair.a, pair.b, m_in);
+    if (manifold.count == 0) return;
+    mine.disturbs |= isActive(both) && isAsleep(both);
+    mine.begun.emplace_back(candidate, contactOf(pair, m_acc.shapes, m_world.state));
+    beginContact(mine.begun.back().second, manifold, m_in);
+}
+
+void Collide::lookAtCandidates() {
+    const std::size_t count = m_acc.candidates.size();
+    auto findings = perBlock<Findings>(count, candidateGrain);
+    overBlocks(m_executor, count, candidateGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        // Whom to look at: without a branch that half of them would mispredict.
+        std::array<std::uint32_t, candidateGrain> near{};
+        std::size_t nearCount = 0;
+        const std::uint8_t nobody = 0;
+        const std::uint8_t* inLanes = m_acc.inLanes.empty() ? &nobody : m_acc.inLanes.data();
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const Candidate& candidate = m_acc.candidates[i];
+            const bool overlap =
+                overlaps(m_acc.tight[candidate.pair.a], m_acc.tight[candidate.pair.b]);
+            const bool apart = candidate.contact == none;
+            const bool held = inLanes[apart ? 0 : candidate.contact] != 0;
+            near[nearCount] = i;
+            nearCount += (apart ? overlap : !held) ? 1u : 0u;
+        }
+        for (std::size_t k = 0; k < nearCount; ++k) {
+            lookAt(near[k], findings[begin / candidateGrain]);
+        }
+    });
+    collect(findings);
+}
+
+}  // namespace
+
+void World::Data::collideAll(Simd simd, Executor* executor) {
+    Collide stage(*this, simd, executor);
+    if (accelerators.rowsHold) stage.lookAtRows();
     do {
-        const std::uint8_t* inLanes = acc.inLanes.empty() ? &nobody : acc.inLanes.data();
-        auto findings = perBlock<Findings>(count, candidateGrain);
-        overBlocks(executor, count, candidateGrain, [&](std::uint32_t begin, std::uint32_t end) {
-            Findings& mine = findings[begin / candidateGrain];
-            // Whom to look at: without a branch that half of them would mispredict.
-            std::array<std::uint32_t, candidateGrain> near{};
-            std::size_t nearCount = 0;
-            for (std::uint32_t i = begin; i < end; ++i) {
-                const Candidate& candidate = acc.candidates[i];
-                const bool overlap =
-                    overlaps(acc.tight[candidate.pair.a], acc.tight[candidate.pair.b]);
-                const bool apart = candidate.contact == none;
-                const bool held = inLanes[apart ? 0 : candidate.contact] != 0;
-                near[nearCount] = i;
-                nearCount += (apart ? overlap : !held) ? 1u : 0u;
-            }
-            for (std::size_t k = 0; k < nearCount; ++k) {
-                const std::uint32_t i = near[k];
-                const Candidate& candidate = acc.candidates[i];
-                const std::uint32_t bodyA = acc.shapes.proxies[candidate.pair.a].body;
-                const std::uint32_t bodyB = acc.shapes.proxies[candidate.pair.b].body;
-                const auto both = static_cast<std::uint8_t>(activity[bodyA] | activity[bodyB]);
-                // What sleeps from its start is looked at once, so that its islands are known.
-                if (!isActive(both) && (both & newToSleep) == 0) continue;
-                if (anyAsleep) {
-                    if (looked[i]) continue;
-                    looked[i] = 1;
-                }
-                if (candidate.contact != none) {
-                    lookAt(candidate.contact, updateContact(acc.contacts[candidate.contact], in),
-                           mine);
-                    continue;
-                }
-                const Manifold manifold =
-                    manifoldOf(bodyA, bodyB, candidate.pair.a, candidate.pair.b, in);
-                if (manifold.count == 0) continue;
-                mine.disturbs |= isActive(both) && isAsleep(both);
-                Contact& contact =
-                    mine.begun.emplace_back(i, contactOf(candidate.pair, acc.shapes, state)).second;
-                beginContact(contact, manifold, in);
-            }
-        });
-        collect(findings);
-        woke = anyAsleep && wakeTouched(disturbs);
-        disturbs = false;
-    } while (woke);
-    report.pairs = static_cast<std::uint32_t>(count);
+        stage.lookAtCandidates();
+    } while (anyAsleep && wakeTouched(stage.takeDisturbed()));
+    report.pairs = static_cast<std::uint32_t>(accelerators.candidates.size());
     std::sort(events.begins.begin(), events.begins.end(), keyBefore<ContactChange>);
     std::sort(events.ends.begin(), events.ends.end(), keyBefore<ContactChange>);
 }

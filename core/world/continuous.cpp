@@ -27,14 +27,10 @@ constexpr float sinkPart = 0.25f;
 constexpr float lostPart = 0.75f;
 constexpr float meetTolerance = 0.001f;  // m, how far from each other bodies are stopped
 
-float absolute(float v) {
-    return v < 0.0f ? -v : v;
-}
-
 /// How far a body turned from a rotation to another, rad: as its spin (rad over the step) says
 /// where it may have gone round more than half.
 float turnBetween(Rotation from, Rotation to, float spin) {
-    if (from == to && absolute(spin) < 1.0f) return 0.0f;
+    if (from == to && absoluteOf(spin) < 1.0f) return 0.0f;
     const float angle = angleOf(relative(from, to));
     constexpr float round = static_cast<float>(2.0 * pi);
     const float turns = (spin - angle) / round;
@@ -45,7 +41,7 @@ float turnBetween(Rotation from, Rotation to, float spin) {
 /// Bounds of all places of a hull on its way. Between its two ends a point is off their chord by at
 /// most reach · (1 − cos θ/2) ≤ reach · sin² θ/2 for |θ| ≤ π; beyond, it may be all around.
 Bounds boundsOnTheWay(const SweptHull& swept, const Pose& to) {
-    if (absolute(swept.turn) > static_cast<float>(pi)) {
+    if (absoluteOf(swept.turn) > static_cast<float>(pi)) {
         return grown(Bounds{minOf(swept.from.p, to.p), maxOf(swept.from.p, to.p)},
                      swept.reach + swept.hull->radius);
     }

@@ -78,7 +78,7 @@ void World::Data::settleIslands() {
         BodyMotion& motion = state.motions[body];
         // No point of the body is faster than |v| + |ω| r.
         const float spin = motion.angularVelocity * accelerators.shapes.reach[body];
-        const float left = sleepSpeed - (spin < 0.0f ? -spin : spin);
+        const float left = sleepSpeed - absoluteOf(spin);
         const bool quiet = left > 0.0f && lengthSquared(motion.velocity) < left * left;
         const bool may = (state.bodies[body].flags & BodyInfo::maySleep) != 0 && !driven[body];
         motion.rest = quiet && may ? std::min(motion.rest + 1, ticks) : 0;
