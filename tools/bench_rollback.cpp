@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "core/scene/catalog.h"
 #include "core/world/world.h"
@@ -168,8 +169,7 @@ Json asJson(const Measured& m) {
 }
 
 void printTable(const std::vector<Measured>& rows) {
-    std::printf("%s; %s; commit %s; one thread\n", machineName().c_str(), compilerName().c_str(),
-                commitName().c_str());
+    std::printf("%s; one thread\n", originLine().c_str());
     Table table({"scene", "bodies", "contacts", "save, µs", "restore, µs", "step, µs",
                  "8 ticks, ms", "snapshot, B", "less definitions", "delta, B", "motion root",
                  "full root", "with gathering", "hash"});
@@ -213,11 +213,7 @@ Answer benchRollback(int repeats, bool json) {
     if (json) {
         Json all = Json::array();
         for (const Measured& m : rows) all.push_back(asJson(m));
-        print({{"machine", machineName()},
-               {"compiler", compilerName()},
-               {"commit", commitName()},
-               {"finished", rows.size() == cases.size()},
-               {"results", all}});
+        print(documentOf(std::move(all), rows.size() == cases.size()));
     } else if (!rows.empty()) {
         printTable(rows);
     }

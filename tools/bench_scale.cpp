@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -121,8 +122,7 @@ Json asJson(const Measured& m) {
 }
 
 void printTable(const std::vector<Measured>& rows) {
-    std::printf("%s; %s; commit %s\n", machineName().c_str(), compilerName().c_str(),
-                commitName().c_str());
+    std::printf("%s\n", originLine().c_str());
     Table table({"scene", "threads", "bodies", "contacts", "ms a tick", "ns a body and tick",
                  "B a body", "hash"});
     for (const Measured& m : rows)
@@ -166,11 +166,7 @@ Answer benchScale(const std::vector<int>& threads, bool quick, bool json) {
     if (json) {
         Json all = Json::array();
         for (const Measured& m : rows) all.push_back(asJson(m));
-        print({{"machine", machineName()},
-               {"compiler", compilerName()},
-               {"commit", commitName()},
-               {"finished", finished},
-               {"results", all}});
+        print(documentOf(std::move(all), finished));
     } else if (!rows.empty()) {
         printTable(rows);
     }

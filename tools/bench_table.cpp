@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
+#include <utility>
 
 #include "tools/bench.h"
 #include "tools/machine.h"
@@ -58,16 +59,11 @@ Json benchJson(const std::vector<BenchResult>& results, bool finished) {
                         {"max_penetration_m", r.errors.maxPenetration},
                         {"max_joint_error_m", r.errors.maxJointError},
                         {"accuracy", asJson(r.errors)}});
-    return {{"machine", machineName()},
-            {"compiler", compilerName()},
-            {"commit", commitName()},
-            {"finished", finished},
-            {"results", rows}};
+    return documentOf(std::move(rows), finished);
 }
 
 void printBench(const std::vector<BenchResult>& results) {
-    std::printf("%s; %s; commit %s\n", machineName().c_str(), compilerName().c_str(),
-                commitName().c_str());
+    std::printf("%s\n", originLine().c_str());
     Table table({"scene", "engine", "threads", "ticks", "psm, ms", "min", "q1", "median", "q3",
                  "ratio", "drift", "penetration, m", "joint error, m", "hash"});
     for (const BenchResult& r : results)

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include "tools/commit.h"
 
@@ -28,6 +29,18 @@ std::string compilerName() {
 
 std::string commitName() {
     return HUESTEP_COMMIT;
+}
+
+std::string originLine() {
+    return machineName() + "; " + compilerName() + "; commit " + commitName();
+}
+
+Json documentOf(Json results, bool finished) {
+    return {{"machine", machineName()},
+            {"compiler", compilerName()},
+            {"commit", commitName()},
+            {"finished", finished},
+            {"results", std::move(results)}};
 }
 
 }  // namespace huestep::tools
