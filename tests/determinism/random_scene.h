@@ -160,4 +160,17 @@ inline Action randomAction(Random& random, const World& world) {
     }
 }
 
+/// Commands of the next tick; quiet stretches let things fall asleep.
+inline std::vector<Command> randomCommands(Random& random, const World& world,
+                                           std::uint64_t& sequence) {
+    std::vector<Command> commands;
+    if (world.tick() % 100 > 60) return commands;
+    const std::uint32_t count = random.below(4);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const PlayerId author = random.once(2) ? 0 : random.below(5);
+        commands.push_back({author, ++sequence, randomAction(random, world)});
+    }
+    return commands;
+}
+
 }  // namespace huestep::test

@@ -16,18 +16,7 @@ TEST_P(RandomWorld, IsTheSameInEveryConfiguration) {
     std::uint64_t sequence = 0;
     std::size_t applied = 0;
     runTogether(
-        start, 150,
-        [&](const World& world) {
-            std::vector<Command> commands;
-            // Quiet stretches let things fall asleep.
-            if (world.tick() % 100 > 60) return commands;
-            const std::uint32_t count = random.below(4);
-            for (std::uint32_t i = 0; i < count; ++i) {
-                const PlayerId author = random.once(2) ? 0 : random.below(5);
-                commands.push_back({author, ++sequence, randomAction(random, world)});
-            }
-            return commands;
-        },
+        start, 150, [&](const World& world) { return randomCommands(random, world, sequence); },
         random.roll(),
         [&](const World& world) {
             for (const CommandOutcome& outcome : world.events().commands) {

@@ -4,21 +4,10 @@
 #include <cmath>
 
 #include "core/math/trig.h"
-#include "core/scene/measure.h"
-#include "tests/core/support.h"
+#include "tests/core/joint/jointed.h"
 
 namespace huestep::test {
 namespace {
-
-double angleOfBody(const World& world, BodyId id) {
-    const BodyMotion m = motionOf(world, id);
-    return std::atan2(wide(m.rotation.s), wide(m.rotation.c));
-}
-
-double errorOf(const World& world) {
-    return measure(world.info(), world.bodies(), world.shapes(), world.joints(), world.motions())
-        .maxJointError;
-}
 
 /// An anchor without shape at the origin and a disc of 1 kg beside it, without gravity.
 Scene anchored(const JointDef& joint, Vec2 disc) {

@@ -4,23 +4,12 @@
 #include <cmath>
 
 #include "core/math/trig.h"
-#include "core/scene/measure.h"
-#include "tests/core/support.h"
+#include "tests/core/joint/jointed.h"
 
 namespace huestep::test {
 namespace {
 
 constexpr float angle30 = 0.52359878f;
-
-double errorOf(const World& world) {
-    return measure(world.info(), world.bodies(), world.shapes(), world.joints(), world.motions())
-        .maxJointError;
-}
-
-double angleOfBody(const World& world, BodyId id) {
-    const BodyMotion m = motionOf(world, id);
-    return std::atan2(wide(m.rotation.s), wide(m.rotation.c));
-}
 
 /// A disc of 1 kg at the origin on an axis that starts there, fixed in the world.
 Scene onAxis(float angle, float gravity = -10.0f) {

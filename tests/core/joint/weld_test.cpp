@@ -5,21 +5,10 @@
 #include <numbers>
 
 #include "core/math/trig.h"
-#include "core/scene/measure.h"
-#include "tests/core/support.h"
+#include "tests/core/joint/jointed.h"
 
 namespace huestep::test {
 namespace {
-
-double angleOfBody(const World& world, BodyId id) {
-    const BodyMotion m = motionOf(world, id);
-    return std::atan2(wide(m.rotation.s), wide(m.rotation.c));
-}
-
-double errorOf(const World& world) {
-    return measure(world.info(), world.bodies(), world.shapes(), world.joints(), world.motions())
-        .maxJointError;
-}
 
 JointDef weld(std::uint32_t a, Vec2 anchorA, std::uint32_t b, Vec2 anchorB) {
     JointDef joint = hinge(a, anchorA, b, anchorB);

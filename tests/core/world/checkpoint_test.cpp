@@ -55,18 +55,6 @@ struct Past {
     explicit Past(const World& start) : roots{start.fullRoot()}, events{start.events()} {}
 };
 
-/// Commands of the next tick; quiet stretches let things fall asleep.
-std::vector<Command> randomCommands(Random& random, const World& world, std::uint64_t& sequence) {
-    std::vector<Command> commands;
-    if (world.tick() % 100 > 60) return commands;
-    const std::uint32_t count = random.below(4);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const PlayerId author = random.once(2) ? 0 : random.below(5);
-        commands.push_back({author, ++sequence, randomAction(random, world)});
-    }
-    return commands;
-}
-
 /// Goes through the ticks of a past that the world has before it.
 void follow(World& world, const Past& past, const StepResources& with, const char* when) {
     while (world.tick() + 1 < past.roots.size()) {
