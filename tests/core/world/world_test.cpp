@@ -1,10 +1,10 @@
-// The world as a value: copies, restores, accelerators, free flight, quarantine, odd worlds.
+// The world as a value: copies, restores, accelerators, free flight, quarantine.
 
 #include <cmath>
 
 #include "core/math/finite.h"
 #include "core/math/trig.h"
-#include "tests/core/support.h"
+#include "tests/core/odd_worlds.h"
 
 namespace huestep::test {
 namespace {
@@ -153,124 +153,6 @@ TEST(World, DroppingAcceleratorsEveryTickChangesNothing) {
         ASSERT_EQ(world.events(), other.events()) << "tick " << tick;
     }
 }
-
-// Worlds at the edge of what there is: every stage has to cope. Each is stepped, saved, restored
-// and asked; what must be true of all of them is checked here, what is special in the lambda.
-struct OddWorld {
-    std::string name;
-    Scene scene;
-};
-
-Scene allStatic() {
-    Scene scene;
-    for (int i = 0; i < 30; ++i) {
-        scene.bodies.push_back(ground());
-        scene.bodies.back().position.x = 0.3f * static_cast<float>(i);
-    }
-    return scene;
-}
-
-Scene allKinematic() {
-    Scene scene = allStatic();
-    for (BodyDef& body : scene.bodies) {
-        body.type = BodyType::Kinematic;
-        body.velocity = {1.0f, 0.5f};
-        body.angularVelocity = 1.0f;
-    }
-    return scene;
-}
-
-Scene allAsleep() {
-    Scene scene = sceneOf({ground()});
-    for (int i = 0; i < 20; ++i) {
-        scene.bodies.push_back(boxAt({0.0f, 0.5f + static_cast<float>(i)}));
-        scene.bodies.back().asleep = true;
-    }
-    return scene;
-}
-
-Scene movedBy(Scene scene, Vec2 by) {
-    for (BodyDef& body : scene.bodies) body.position = body.position + by;
-    return scene;
-}
-
-Scene huge() {
-    Scene scene = sceneOf({bodyAt(BodyType::Static, {0.0f, -1.0e4f}, ShapeDef::box(1.0e4f, 1.0e4f)),
-                           boxAt({0.0f, 5.0e3f}, 5.0e3f), boxAt({0.0f, 1.02e4f}, 0.01f),
-                           discAt({9.0e3f, 3.0e3f}, 2.9e3f)});
-    return scene;
-}
-
-Scene tiny() {
-    Scene scene = sceneOf({ground()});
-    for (int i = 0; i < 20; ++i) {
-        scene.bodies.push_back(discAt(
-            {0.0021f * static_cast<float>(i % 5), 0.01f + 0.003f * static_cast<float>(i)}, 0.001f));
-    }
-    return scene;
-}
-
-Scene onePlace() {
-    Scene scene;
-    for (int i = 0; i < 40; ++i) scene.bodies.push_back(i % 2 ? boxAt({}) : discAt({}));
-    return scene;
-}
-
-Scene onlyAnchors() {
-    BodyDef anchor;
-    BodyDef mover;
-    mover.type = BodyType::Kinematic;
-    mover.velocity = {1.0f, 0.0f};
-    return sceneOf({anchor, mover}, {hinge(0, {}, 1, {})});
-}
-
-std::vector<OddWorld> oddWorlds() {
-    return {{"Empty", Scene{}},
-            {"OneBody", sceneOf({discAt({})})},
-            {"AllStatic", allStatic()},
-            {"AllKinematic", allKinematic()},
-            {"AllAsleep", allAsleep()},
-            {"FarAway", movedBy(*sceneFromCatalog("hinges:columns=2,rows=4"), {9.0e5f, -9.0e5f})},
-            {"Huge", huge()},
-            {"Tiny", tiny()},
-            {"AllInOnePlace", onePlace()},
-            {"AnchorsWithoutShapes", onlyAnchors()}};
-}
-
-class OddWorlds : public testing::TestWithParam<OddWorld> {};
-
-TEST_P(OddWorlds, PassEveryStage) {
-    World world = worldOf(GetParam().scene);
-    World other = world;
-    Executor executor(3);
-    for (int tick = 0; tick < 60; ++tick) {
-        if (tick == 20) other = restored(other);
-        if (tick == 40) other.dropAccelerators();
-        world.step({});
-        other.step({}, {&executor, Simd::Scalar, nullptr});
-        ASSERT_EQ(differenceOf(world, other), "") << "tick " << tick;
-        ASSERT_EQ(world.fullRoot(), other.fullRoot());
-        ASSERT_EQ(world.motionRoot(), other.motionRoot());
-        EXPECT_TRUE(world.events().quarantined.empty());
-        for (const BodyMotion& m : world.motions()) {
-            ASSERT_TRUE(isFinite(m.position) && isFinite(m.velocity));
-        }
-    }
-    EXPECT_EQ(world.tick(), 60u);
-    const Vec2 far{1.0e6f, 1.0e6f};
-    for (const RayHit& hit : world.castRay(-far, far)) EXPECT_TRUE(isFinite(hit.point));
-    EXPECT_LE(world.overlap(ShapeDef::circle({}, 1.0e4f), {}).size(), world.shapes().size());
-    EXPECT_EQ(world.contactViews().size(), world.contacts().size());
-    EXPECT_EQ(world.motionLeaves().size(), (world.bodies().size() + 63) / 64);
-}
-
-std::string nameOfOdd(const testing::TestParamInfo<OddWorld>& info) {
-    return info.param.name;
-}
-void PrintTo(const OddWorld& odd, std::ostream* out) {
-    *out << odd.name;
-}
-INSTANTIATE_TEST_SUITE_P(All, OddWorlds, testing::ValuesIn(oddWorlds()), nameOfOdd);
 
 TEST(World, WhereAllAreAsleepNobodyMovesAndNothingIsSolved) {
     World world = worldOf(allAsleep());
