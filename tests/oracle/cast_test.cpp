@@ -4,19 +4,13 @@
 #include <box2d/box2d.h>
 #include <gtest/gtest.h>
 
+#include "tests/core/hulls.h"
 #include "tests/oracle/brute.h"
 
 namespace huestep::oracle {
 namespace {
 
-Hull hullOfDef(const ShapeDef& shape) {
-    ShapeInfo info{};
-    info.kind =
-        static_cast<std::uint32_t>(shape.kind) | static_cast<std::uint32_t>(shape.vertexCount) << 8;
-    info.radius = shape.radius;
-    info.vertices = shape.vertices;
-    return hullOf<float>(info);
-}
+using test::hullOfDef;
 
 struct Ray {
     Vec2 from, to;
@@ -67,7 +61,7 @@ TEST(RayCast, HitsEveryShapeWhereMarchingDoes) {
         const Outline outline = outlineOf(shape);
         const March expected = march(outline, ray);
         if (expected.fraction < 0.0 && expected.nearest < 1e-4) continue;  // grazes
-        const auto hit = castRayAtHull(hullOfDef(shape), ray.from, ray.to);
+        const auto hit = castRayAtHull(hullOfDef<float>(shape), ray.from, ray.to);
         SCOPED_TRACE("ray " + std::to_string(i));
         // A ray that ends less than a hair inside may round either way.
         if (expected.fraction > 1.0 - 1e-4) continue;
@@ -100,7 +94,7 @@ TEST(RayCast, FromWithinDoesNotHit) {
         Ray ray = randomRay(random);
         ray.from = {random.betweenF(-0.5, 0.5), random.betweenF(-0.5, 0.5)};
         if (distanceToPoint(outlineOf(shape), pointOf(ray, 0.0)) > -1e-3) continue;
-        EXPECT_FALSE(castRayAtHull(hullOfDef(shape), ray.from, ray.to).has_value()) << i;
+        EXPECT_FALSE(castRayAtHull(hullOfDef<float>(shape), ray.from, ray.to).has_value()) << i;
         ++inside;
     }
     EXPECT_GT(inside, 200);
@@ -169,7 +163,7 @@ TEST(RayCast, HitsDiscsPolygonsAndSegmentsWhereBox2DDoes) {
         if (graze.fraction > 1.0 - 1e-3) continue;
         const Peer peer = castByBox2D(shape, ray);
         if (!peer.known) continue;
-        const auto hit = castRayAtHull(hullOfDef(shape), ray.from, ray.to);
+        const auto hit = castRayAtHull(hullOfDef<float>(shape), ray.from, ray.to);
         SCOPED_TRACE("ray " + std::to_string(i));
         ASSERT_EQ(hit.has_value(), peer.hit);
         if (!hit) continue;

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "tests/core/hulls.h"
 #include "tests/oracle/brute.h"
 
 namespace huestep::oracle {
@@ -17,15 +18,7 @@ constexpr double margin = 0.05;
 /// prefers one reference face over an equal one by a tenth of that.
 constexpr double tolerance = 7e-4;
 
-template <class Real>
-HullT<Real> hullOfDef(const ShapeDef& shape) {
-    ShapeInfo info{};
-    info.kind =
-        static_cast<std::uint32_t>(shape.kind) | static_cast<std::uint32_t>(shape.vertexCount) << 8;
-    info.radius = shape.radius;
-    info.vertices = shape.vertices;
-    return hullOf<Real>(info);
-}
+using test::hullOfDef;
 
 struct Pair {
     ShapeDef a, b;
