@@ -91,47 +91,6 @@ int incidentEdge(const HullT<Real>& hull, Vec2T<Real> normal) {
     return best;
 }
 
-/// Nearest of the vertices of one hull to the edges of another, where the hulls are apart: the
-/// nearest features of two convex cores are a vertex and an edge, or two vertices.
-template <class Real>
-struct Nearest {
-    Real squared{0};
-    Vec2T<Real> pointA, pointB;
-    int vertexA = 0;
-    int vertexB = 0;
-    bool twoVertices = false;
-};
-
-template <class Real>
-void nearestToEdges(const HullT<Real>& a, const HullT<Real>& b, bool flipped, bool& found,
-                    Nearest<Real>& nearest) {
-    for (int i = 0; i < a.count; ++i) {
-        const int i2 = a.next(i);
-        const Vec2T<Real> v1 = a.vertices[asIndex(i)];
-        const Vec2T<Real> edge = a.vertices[asIndex(i2)] - v1;
-        const Real edgeSquared = lengthSquared(edge);
-        for (int j = 0; j < b.count; ++j) {
-            const Vec2T<Real> w = b.vertices[asIndex(j)];
-            const Real t = dot(w - v1, edge);
-            const bool before = t <= Real(0);
-            const bool after = t >= edgeSquared;
-            const Vec2T<Real> onEdge = before  ? v1
-                                       : after ? a.vertices[asIndex(i2)]
-                                               : v1 + (t / edgeSquared) * edge;
-            const Real squared = lengthSquared(w - onEdge);
-            if (found && !(squared < nearest.squared)) continue;
-            found = true;
-            const int vertex = after ? i2 : i;
-            nearest.squared = squared;
-            nearest.pointA = flipped ? w : onEdge;
-            nearest.pointB = flipped ? onEdge : w;
-            nearest.vertexA = flipped ? j : vertex;
-            nearest.vertexB = flipped ? vertex : j;
-            nearest.twoVertices = before || after;
-        }
-    }
-}
-
 /// Cuts the incident edge to the reference edge and keeps the points within the margin.
 /// `flipped`: the reference is B. Both hulls are in the frame of A.
 template <class Real>
@@ -205,10 +164,7 @@ ManifoldT<Real> hulls(const HullT<Real>& a, const HullT<Real>& b, Real margin) {
 
     // Two cores of two vertices can be apart though no edge normal says so: end to end.
     if (separation > Real(featureTolerance) || (a.count == 2 && b.count == 2)) {
-        Nearest<Real> nearest;
-        bool found = false;
-        nearestToEdges(a, b, false, found, nearest);
-        nearestToEdges(b, a, true, found, nearest);
+        const Nearest<Real> nearest = nearestPoints(a, b);
         // Two vertices that face each other along the axis but for the tolerance stay with the
         // face: the offset across it is what counts, whatever the distance.
         const Real along = maxOf(separation, Real(0));
@@ -316,10 +272,7 @@ ManifoldT<Real> chainAndHull(const HullT<Real>& chain, const HullT<Real>& b, Rea
     const bool flipped = axis.separation > face + Real(0.1 * featureTolerance);
     const Real separation = flipped ? axis.separation : face;
     if (separation > Real(featureTolerance) || b.count == 2) {
-        Nearest<Real> nearest;
-        bool found = false;
-        nearestToEdges(chain, b, false, found, nearest);
-        nearestToEdges(b, chain, true, found, nearest);
+        const Nearest<Real> nearest = nearestPoints(chain, b);
         const Real across = Real(featureTolerance);
         const Real ahead = maxOf(separation, Real(0));
         if (nearest.twoVertices && nearest.squared > ahead * ahead + across * across) {

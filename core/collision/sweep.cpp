@@ -22,23 +22,6 @@ void highestOverFaces(const Hull& a, const Hull& b, bool flipped, bool& found, S
     best = {axis.separation, flipped ? -n : n};
 }
 
-/// The shortest way from an edge of `a` to a vertex of `b`.
-void nearestVertex(const Hull& a, const Hull& b, bool flipped, bool& found, Vec2& shortest) {
-    for (int i = 0; i < a.count; ++i) {
-        const Vec2 v = a.vertices[asIndex(i)];
-        const Vec2 edge = a.vertices[asIndex(a.next(i))] - v;
-        const float squared = lengthSquared(edge);
-        for (int j = 0; j < b.count; ++j) {
-            const Vec2 w = b.vertices[asIndex(j)] - v;
-            const float t = squared > 0.0f ? clampTo(dot(w, edge) / squared, 0.0f, 1.0f) : 0.0f;
-            const Vec2 way = w - t * edge;
-            if (found && !(lengthSquared(way) < lengthSquared(shortest))) continue;
-            found = true;
-            shortest = flipped ? -way : way;
-        }
-    }
-}
-
 }  // namespace
 
 Separation separationOf(const Hull& a, const Hull& b, const Pose& relative) {
@@ -49,10 +32,8 @@ Separation separationOf(const Hull& a, const Hull& b, const Pose& relative) {
     highestOverFaces(there, a, true, faces, best);
     const bool mayPass = a.count <= 2 && b.count <= 2 && best.distance > -faceTolerance;
     if (!faces || best.distance > 0.0f || mayPass) {
-        Vec2 way;
-        bool found = false;
-        nearestVertex(a, there, false, found, way);
-        nearestVertex(there, a, true, found, way);
+        const Nearest<float> nearest = nearestPoints(a, there);
+        const Vec2 way = nearest.pointB - nearest.pointA;
         const float distance = length(way);
         // What is nearer than the tolerance may be on either side: faces know which.
         if (!faces || distance > maxOf(best.distance, faceTolerance)) {
@@ -69,13 +50,14 @@ Pose relativeAt(const SweptHull& a, const SweptHull& b, float t) {
     return {unrotate(q, apart), relative(q, b.at(t).q)};
 }
 
-std::optional<float> timeOfApproach(const SweptHull& a, const SweptHull& b, float target,
-                                    float tolerance, float until) {
+std::optional<float> timeOfApproach(const SweptHull& a, const SweptHull& b,
+                                    const Separation& atStart, float target, float tolerance,
+                                    float until) {
     const float swing = absoluteOf(a.turn) * a.reach + absoluteOf(b.turn) * b.reach;
     float t = 0.0f;
+    Separation s = atStart;
     for (int look = 0; look < mostLooks; ++look) {
-        const Pose relative = relativeAt(a, b, t);
-        const Separation s = separationOf(*a.hull, *b.hull, relative);
+        if (look > 0) s = separationOf(*a.hull, *b.hull, relativeAt(a, b, t));
         const float gap = s.distance - target;
         if (gap <= tolerance) return t;
         // Along this normal, fixed in the world, the gap shrinks no faster; and the separation is

@@ -42,8 +42,10 @@ Pose relativeAt(const SweptHull& a, const SweptHull& b, float t);
 
 /// The time in [0, until) at which the hulls have come to within `tolerance` (m, > 0) of a
 /// separation of `target` (m; negative: an overlap), before which they were never nearer than
-/// `target`; none if they stay farther apart. Requires that they start farther apart.
-std::optional<float> timeOfApproach(const SweptHull& a, const SweptHull& b, float target,
-                                    float tolerance, float until);
+/// `target`; none if they stay farther apart. Requires that they start farther apart. `atStart`:
+/// their separation at time 0.
+std::optional<float> timeOfApproach(const SweptHull& a, const SweptHull& b,
+                                    const Separation& atStart, float target, float tolerance,
+                                    float until);
 
 }  // namespace huestep

@@ -40,14 +40,16 @@ float turnBetween(Rotation from, Rotation to, float spin) {
 
 /// Bounds of all places of a hull on its way. Between its two ends a point is off their chord by at
 /// most reach · (1 − cos θ/2) ≤ reach · sin² θ/2 for |θ| ≤ π; beyond, it may be all around.
-Bounds boundsOnTheWay(const SweptHull& swept, const Pose& to) {
-    if (absoluteOf(swept.turn) > static_cast<float>(pi)) {
-        return grown(Bounds{minOf(swept.from.p, to.p), maxOf(swept.from.p, to.p)},
-                     swept.reach + swept.hull->radius);
+Bounds boundsOnTheWay(const Hull& hull, const Pose& from, const Pose& to, float spin) {
+    const float reach = coreReachOf(hull);
+    const Vec2 chord{to.q.c - from.q.c, to.q.s - from.q.s};
+    // Both turned and spun by less than a right angle: no need to ask for the angle itself.
+    const bool little = lengthSquared(chord) < 1.9f && absoluteOf(spin) < 1.5f;
+    if (!little && absoluteOf(turnBetween(from.q, to.q, spin)) > static_cast<float>(pi)) {
+        return grown(Bounds{minOf(from.p, to.p), maxOf(from.p, to.p)}, reach + hull.radius);
     }
-    const Vec2 chord{to.q.c - swept.from.q.c, to.q.s - swept.from.q.s};
-    return grown(unite(boundsOf(*swept.hull, swept.from), boundsOf(*swept.hull, to)),
-                 swept.reach * (0.25f * lengthSquared(chord)));
+    return grown(unite(boundsOf(hull, from), boundsOf(hull, to)),
+                 reach * (0.25f * lengthSquared(chord)));
 }
 
 /// The greatest way of a point of a body.
@@ -70,11 +72,11 @@ bool isBehind(const Hull& chain, const Hull& hull, const Pose& relative) {
     return dot(sum, chain.normals[0]) < 0.0f;
 }
 
-/// A wall that a shape may meet on its way, and how far from each other they start.
+/// A wall that a shape may meet on its way, and how they start.
 struct Wall {
     SweptHull swept;
     std::uint32_t body = 0;
-    float before = 0.0f;  ///< m
+    Separation before;
     bool drives = false;
 };
 
@@ -84,11 +86,11 @@ std::optional<Meeting> meetingOf(const Wall& wall, const SweptHull& body, float 
     const float sink = sinkPart * thickness;
     const float deepest = maxOf(sunk - sink, -lostPart * thickness);
     const float tolerance = 0.25f * sink;
-    if (!(wall.before > deepest + tolerance)) return std::nullopt;
-    const auto through = timeOfApproach(wall.swept, body, deepest, tolerance, until);
+    if (!(wall.before.distance > deepest + tolerance)) return std::nullopt;
+    const auto through = timeOfApproach(wall.swept, body, wall.before, deepest, tolerance, until);
     if (!through) return std::nullopt;
-    if (!(wall.before > meetTolerance)) return Meeting{*through, true};
-    const auto met = timeOfApproach(wall.swept, body, 0.0f, meetTolerance, *through);
+    if (!(wall.before.distance > meetTolerance)) return Meeting{*through, true};
+    const auto met = timeOfApproach(wall.swept, body, wall.before, 0.0f, meetTolerance, *through);
     return Meeting{met ? *met : *through, false};
 }
 
@@ -114,11 +116,12 @@ class Stopper {
         Pose stopped;
         for (std::uint32_t s = m_known.first[leap.body]; s < m_known.first[leap.body + 1]; ++s) {
             if (m_known.proxies[s].alone || !(m_known.thickness[s] > 0.0f)) continue;
+            findWalls(s, leap, scratch);
+            if (scratch.walls.empty()) continue;
             const SweptHull body = swept(s, leap.body, leap.from);
-            findWalls(s, body, poseOf(leap.body), scratch);
             // Of a floor of many boxes it is as deep in the next one as in those it lies on.
             float sunk = 0.0f;
-            for (const Wall& wall : scratch.walls) sunk = minOf(sunk, wall.before);
+            for (const Wall& wall : scratch.walls) sunk = minOf(sunk, wall.before.distance);
             for (const Wall& wall : scratch.walls) {
                 const auto meeting = meetingOf(wall, body, m_known.thickness[s], sunk, first.time);
                 if (!meeting) continue;
@@ -141,35 +144,42 @@ class Stopper {
                                          [](const Leap& l, std::uint32_t b) { return l.body < b; });
         return at != m_driven.end() && at->body == body ? &*at : nullptr;
     }
+    [[nodiscard]] float spinOf(std::uint32_t body) const {
+        return m_state.info().stepSeconds * m_state.motions[body].angularVelocity;
+    }
     /// In the order of their shapes.
-    void findWalls(std::uint32_t shape, const SweptHull& body, const Pose& to,
-                   Scratch& scratch) const {
-        const Bounds way = grown(boundsOnTheWay(body, to), m_farthestDriven);
+    void findWalls(std::uint32_t shape, const Leap& leap, Scratch& scratch) const {
+        const Bounds way = grown(
+            boundsOnTheWay(m_known.hulls[shape], leap.from, poseOf(leap.body), spinOf(leap.body)),
+            m_farthestDriven);
         scratch.near.clear();
         scratch.walls.clear();
         m_acc.broadPhase.findFixed(shape, way, m_known.proxies, m_known.forbidden, scratch.near);
+        if (scratch.near.empty()) return;
+        const SweptHull body = swept(shape, leap.body, leap.from);
         std::sort(scratch.near.begin(), scratch.near.end());
         for (const std::uint32_t other : scratch.near) {
             // Tight bounds decide: fat ones depend on what was before.
             if (!overlaps(way, m_acc.tight[other])) continue;
             const std::uint32_t place = m_known.proxies[other].body;
             const Leap* drive = driveOf(place);
-            Wall wall{swept(other, place, drive != nullptr ? drive->from : poseOf(place)), place,
-                      0.0f, drive != nullptr};
+            Wall wall{swept(other, place, drive != nullptr ? drive->from : poseOf(place)),
+                      place,
+                      {},
+                      drive != nullptr};
             const Pose first = relativeAt(wall.swept, body, 0.0f);
             const Hull& hull = *wall.swept.hull;
             if (hull.oneSided && isBehind(hull, *body.hull, first)) continue;
-            wall.before = separationOf(hull, *body.hull, first).distance;
+            wall.before = separationOf(hull, *body.hull, first);
             scratch.walls.push_back(wall);
         }
     }
     /// How a shape went from where its body was to where that is.
     [[nodiscard]] SweptHull swept(std::uint32_t shape, std::uint32_t body, const Pose& from) const {
         const BodyMotion& motion = m_state.motions[body];
-        const float spin = m_state.info().stepSeconds * motion.angularVelocity;
         const Hull& hull = m_known.hulls[shape];
-        return {&hull, from, motion.position - from.p, turnBetween(from.q, motion.rotation, spin),
-                coreReachOf(hull)};
+        return {&hull, from, motion.position - from.p,
+                turnBetween(from.q, motion.rotation, spinOf(body)), coreReachOf(hull)};
     }
     void put(std::uint32_t body, const Pose& stopped, const Meeting& meeting) const {
         BodyMotion& motion = m_state.motions[body];

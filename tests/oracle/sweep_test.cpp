@@ -152,7 +152,8 @@ TEST(TimeOfApproach, IsThatOfBruteForceAndOfBox2D) {
                                 {static_cast<float>(p.travel.x), static_cast<float>(p.travel.y)},
                                 static_cast<float>(p.turn),
                                 coreReachOf(b)};
-        const auto time = timeOfApproach(still, passing, static_cast<float>(target),
+        const Separation atStart = separationOf(a, b, relativeAt(still, passing, 0.0f));
+        const auto time = timeOfApproach(still, passing, atStart, static_cast<float>(target),
                                          static_cast<float>(tolerance), 1.0f);
         SCOPED_TRACE("passage " + std::to_string(i));
         if (!time) {

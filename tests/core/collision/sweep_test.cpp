@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/collision/axes.h"
 #include "core/collision/manifold.h"
 #include "tests/core/hulls.h"
 
@@ -18,6 +19,10 @@ SweptHull randomSweep(Random& random, const Hull& hull, double far) {
     swept.turn = random.once(3) ? 0.0f : random.betweenF(-5.0, 5.0);
     swept.reach = coreReachOf(hull);
     return swept;
+}
+
+Separation separationAtStart(const SweptHull& a, const SweptHull& b) {
+    return separationOf(*a.hull, *b.hull, relativeAt(a, b, 0.0f));
 }
 
 TEST(Sweep, DistancesAreThoseOfTheNearestPoints) {
@@ -45,6 +50,32 @@ TEST(Sweep, DistancesAreThoseOfTheNearestPoints) {
     EXPECT_GT(compared, 5'000);
 }
 
+TEST(Sweep, TheNearestEdgeAndVertexInLanesAreThoseOfOneAtATime) {
+    Random random(43);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 20'000; ++trial) {
+        const Hull a = hullOfDef<float>(randomShapeDef(random));
+        const Hull b = moved(hullOfDef<float>(randomShapeDef(random)),
+                             Pose{random.point(-2.0, 2.0), rotationOf(random.betweenF(-3.1, 3.1))});
+        int edge = -1, vertex = -1;
+        float least = 0.0f;
+        for (int i = 0; i < a.count; ++i) {
+            for (int j = 0; j < b.count; ++j) {
+                const Vec2 w = b.vertices[asIndex(j)];
+                const float squared = lengthSquared(w - NearestOnEdge<float>(a, i, w).point);
+                if (edge >= 0 && !(squared < least)) continue;
+                edge = i;
+                vertex = j;
+                least = squared;
+            }
+        }
+        const EdgeAndVertex<float> nearest = nearestEdgeAndVertex(a, b);
+        ASSERT_EQ(nearest.squared, least) << "trial " << trial;
+        ASSERT_EQ(nearest.edge, edge) << "trial " << trial;
+        ASSERT_EQ(nearest.vertex, vertex) << "trial " << trial;
+    }
+}
+
 TEST(Sweep, NothingIsNearerThanTheTargetBeforeTheTimeOfApproach) {
     Random random(42);
     SCOPED_TRACE(random.trace());
@@ -60,7 +91,8 @@ TEST(Sweep, NothingIsNearerThanTheTargetBeforeTheTimeOfApproach) {
             return separationOf(a, b, relativeAt(first, second, t)).distance;
         };
         if (distanceAt(0.0f) <= target + tolerance) continue;
-        const auto time = timeOfApproach(first, second, target, tolerance, 1.0f);
+        const auto time = timeOfApproach(first, second, separationAtStart(first, second), target,
+                                         tolerance, 1.0f);
         const float end = time ? *time : 1.0f;
         for (int look = 0; look < 500; ++look) {
             const float t = end * (static_cast<float>(look) / 500.0f);
@@ -80,9 +112,12 @@ TEST(Sweep, ADiscThatSlidesAlongAFaceNeverComesNearer) {
     const Hull disc = hullOfDef<float>(ShapeDef::circle({}, 0.1f));
     const SweptHull still{&floor, {}, {}, 0.0f, 0.0f};
     const SweptHull sliding{&disc, {{-50.0f, 0.601f}, {}}, {90.0f, 0.0f}, 0.0f, 0.1f};
-    EXPECT_FALSE(timeOfApproach(still, sliding, -0.001f, 0.0005f, 1.0f).has_value());
+    EXPECT_FALSE(
+        timeOfApproach(still, sliding, separationAtStart(still, sliding), -0.001f, 0.0005f, 1.0f)
+            .has_value());
     const SweptHull sinking{&disc, {{-50.0f, 0.7f}, {}}, {90.0f, -0.2f}, 0.0f, 0.1f};
-    const auto time = timeOfApproach(still, sinking, 0.0f, 0.0005f, 1.0f);
+    const auto time =
+        timeOfApproach(still, sinking, separationAtStart(still, sinking), 0.0f, 0.0005f, 1.0f);
     ASSERT_TRUE(time.has_value());
     EXPECT_NEAR(wide(*time), 0.5, 0.005);
 }
