@@ -15,7 +15,7 @@ constexpr int lowestLevel = -7;   // cells of 1/128 m
 constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits, as speeds have a cap
 constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
-constexpr std::uint32_t joinGrain = 128;
+constexpr std::uint32_t joinGrain = 256;
 constexpr std::uint32_t entryGrain = 512;
 constexpr std::size_t joinAllFrom = 8;        // from an eighth of all shapes on
 constexpr std::uint32_t joinSerially = 1024;  // entries: fewer are joined before a team is awake
@@ -91,89 +91,23 @@ ShapePair ordered(std::uint32_t a, std::uint32_t b) {
     return a < b ? ShapePair{a, b} : ShapePair{b, a};
 }
 
-/// Sorts pairs by buckets of `a`: a counting sort, then a handful in each bucket.
-void sortPairs(std::vector<ShapePair>& pairs, std::size_t shapeCount,
-               std::vector<ShapePair>& scratch) {
-    std::vector<std::uint32_t> start(shapeCount + 1, 0);
-    for (const ShapePair& p : pairs) ++start[p.a + 1];
-    for (std::size_t i = 1; i <= shapeCount; ++i) start[i] += start[i - 1];
-    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-    scratch.resize(pairs.size());
-    for (const ShapePair& p : pairs) scratch[next[p.a]++] = p;
-    for (std::size_t i = 0; i < shapeCount; ++i) {
-        // A handful mostly: by insertion. What is crowded is sorted as anything large is.
-        const auto first = scratch.begin() + start[i], last = scratch.begin() + start[i + 1];
-        if (last - first > 16) {
-            std::sort(first, last);
-            continue;
-        }
-        for (auto at = first; at != last; ++at) {
-            const ShapePair pair = *at;
-            auto to = at;
-            for (; to != first && pair.b < (to - 1)->b; --to) *to = *(to - 1);
-            *to = pair;
-        }
-    }
-    pairs.swap(scratch);
-}
-
 }  // namespace
-
-void sortIntoKinds(std::span<ShapeProxy> proxies) {
-    struct Kind {
-        const ShapeProxy* first = nullptr;
-        bool manyBodies = false;
-        bool alone = true;
-    };
-    std::vector<Kind> kinds;
-    std::size_t last = 0;  // shapes of a kind come in runs
-    const auto isOf = [&](const ShapeProxy& p, const Kind& k) {
-        return k.first->filter == p.filter && k.first->dynamic == p.dynamic &&
-               k.first->jointed == p.jointed;
-    };
-    for (ShapeProxy& p : proxies) {
-        if (last == kinds.size() || !isOf(p, kinds[last])) {
-            for (last = 0; last < kinds.size() && !isOf(p, kinds[last]);) ++last;
-        }
-        if (last == kinds.size()) {
-            if (last == ShapeProxy::unknownKind) {
-                for (ShapeProxy& all : proxies) {
-                    all.kind = ShapeProxy::unknownKind;
-                    all.alone = false;
-                }
-                return;
-            }
-            kinds.push_back({&p});
-        }
-        Kind& kind = kinds[last];
-        kind.manyBodies = kind.manyBodies || kind.first->body != p.body;
-        p.kind = static_cast<std::uint8_t>(last);
-    }
-    for (Kind& a : kinds) {
-        for (const Kind& b : kinds) {
-            if (&a == &b && !a.manyBodies) continue;
-            if (mayTouch(a.first->filter, b.first->filter) &&
-                (a.first->dynamic || b.first->dynamic)) {
-                a.alone = false;
-            }
-        }
-    }
-    for (ShapeProxy& p : proxies) p.alone = kinds[p.kind].alone;
-}
 
 void BroadPhase::clear() {
     m_fat.clear();
     m_entries.clear();
     m_levels.clear();
+    m_fixed.clear();
+    m_fixedLevels.clear();
     m_pairs.clear();
     m_isMoved.clear();
 }
 
 BroadPhase::Entry BroadPhase::entryOf(std::uint32_t shape, const ShapeProxy& proxy) const {
     const Bounds& box = m_fat[shape];
-    return {box.low.x,   box.low.y,  -box.high.x,
-            -box.high.y, keyOf(box), shape | (static_cast<std::uint32_t>(proxy.kind) << 24),
-            proxy.body};
+    const std::uint32_t fixed = proxy.dynamic ? 0u : 1u;
+    const std::uint32_t tag = shape | static_cast<std::uint32_t>(proxy.kind) << 24 | fixed << 31;
+    return {box.low.x, box.low.y, -box.high.x, -box.high.y, keyOf(box), tag, proxy.body};
 }
 
 void BroadPhase::learnKinds(std::span<const ShapeProxy> proxies) {
@@ -226,50 +160,72 @@ void BroadPhase::rebuildAll(std::span<const Bounds> tight, std::span<const Vec2>
         }
     });
     sortEntries();
-    findLevels(proxies);
+    findLevels();
 }
 
-/// Sorts all entries by key: least significant digit first, over the bits in which keys differ.
+/// Sorts all entries by key: least significant digit first. Rows and columns are counted from the
+/// lowest that there is, so that few digits are left.
 void BroadPhase::sortEntries() {
     struct Place {
         std::uint64_t key;
         std::uint32_t entry;
     };
     constexpr int digitBits = 8;
+    constexpr std::uint64_t digitMask = (1u << digitBits) - 1;
     const std::size_t count = m_entries.size();
-    std::vector<Place> places(count), next(count);
-    std::uint64_t differ = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        places[i] = {m_entries[i].key, i};
-        differ |= m_entries[i].key ^ m_entries[0].key;
+    if (count == 0) return;
+    const auto rowOf = [](std::uint64_t key) { return key >> 28 & cellMask; };
+    const auto columnOf = [](std::uint64_t key) { return key & cellMask; };
+    std::uint64_t row0 = cellMask, row1 = 0, column0 = cellMask, column1 = 0;
+    for (const Entry& e : m_entries) {
+        row0 = std::min(row0, rowOf(e.key));
+        row1 = std::max(row1, rowOf(e.key));
+        column0 = std::min(column0, columnOf(e.key));
+        column1 = std::max(column1, columnOf(e.key));
     }
-    for (int shift = 0; shift < 64; shift += digitBits) {
-        if ((differ >> shift & 0xff) == 0) continue;
-        std::array<std::uint32_t, 256> start{};
-        for (const Place& p : places) ++start[p.key >> shift & 0xff];
+    const auto columnBits = std::bit_width(column1 - column0);
+    const auto rowBits = std::bit_width(row1 - row0);
+    std::vector<Place> places(count), next(count);
+    std::uint64_t used = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint64_t key = m_entries[i].key;
+        const std::uint64_t row = rowOf(key) - row0, column = columnOf(key) - column0;
+        places[i] = {((key >> 56) << rowBits | row) << columnBits | column, i};
+        used |= places[i].key;
+    }
+    for (int shift = 0; shift < 64 && used >> shift != 0; shift += digitBits) {
+        if ((used >> shift & digitMask) == 0) continue;
+        std::array<std::uint32_t, digitMask + 1> start{};
+        for (const Place& p : places) ++start[p.key >> shift & digitMask];
         std::uint32_t sum = 0;
         for (std::uint32_t& s : start) {
             const std::uint32_t of = s;
             s = sum;
             sum += of;
         }
-        for (const Place& p : places) next[start[p.key >> shift & 0xff]++] = p;
+        for (const Place& p : places) next[start[p.key >> shift & digitMask]++] = p;
         places.swap(next);
     }
-    m_entryScratch.resize(count);
-    for (std::size_t i = 0; i < count; ++i) m_entryScratch[i] = m_entries[places[i].entry];
-    m_entries.swap(m_entryScratch);
+    m_scratch.entries.resize(count);
+    for (std::size_t i = 0; i < count; ++i) m_scratch.entries[i] = m_entries[places[i].entry];
+    m_entries.swap(m_scratch.entries);
 }
 
-void BroadPhase::findLevels(std::span<const ShapeProxy> proxies) {
-    m_levels.clear();
-    for (std::uint32_t i = 0; i < m_entries.size(); ++i) {
-        const int level = static_cast<int>(m_entries[i].key >> 56) + lowestLevel;
-        if (m_levels.empty() || m_levels.back().level != level)
-            m_levels.push_back({level, i, i, false});
-        m_levels.back().end = i + 1;
-        m_levels.back().hasFixed |= !proxies[m_entries[i].shape()].dynamic;
+void BroadPhase::findLevels() {
+    m_fixed.clear();
+    for (const Entry& e : m_entries) {
+        if (e.fixed()) m_fixed.push_back(e);
     }
+    const auto find = [](std::span<const Entry> entries, std::vector<Level>& levels) {
+        levels.clear();
+        for (std::uint32_t i = 0; i < entries.size(); ++i) {
+            const int level = static_cast<int>(entries[i].key >> 56) + lowestLevel;
+            if (levels.empty() || levels.back().level != level) levels.push_back({level, i, i});
+            levels.back().end = i + 1;
+        }
+    };
+    find(m_entries, m_levels);
+    find(m_fixed, m_fixedLevels);
 }
 
 /// Takes the moved entries out, sorts them by their new cells, and merges them in again.
@@ -283,11 +239,11 @@ void BroadPhase::moveEntries(std::span<const std::uint32_t> moved,
     }
     std::sort(changed.begin(), changed.end(), before);
     std::erase_if(m_entries, [this](const Entry& e) { return m_isMoved[e.shape()] != 0; });
-    m_entryScratch.resize(m_entries.size() + changed.size());
+    m_scratch.entries.resize(m_entries.size() + changed.size());
     std::merge(m_entries.begin(), m_entries.end(), changed.begin(), changed.end(),
-               m_entryScratch.begin(), before);
-    m_entries.swap(m_entryScratch);
-    findLevels(proxies);
+               m_scratch.entries.begin(), before);
+    m_entries.swap(m_scratch.entries);
+    findLevels();
 }
 
 /// The box whose overlaps are wanted: highs, and lows negated.
@@ -305,13 +261,14 @@ struct BroadPhase::Query {
     LaneF<4> m_limits;
 };
 
-/// Calls `visit(entry)` for the entries of a level whose boxes overlap `box`.
+/// Calls `visit(entry)` for those of sorted entries of a level whose boxes overlap `box`.
 template <class Visit>
-void BroadPhase::visitOverlaps(const Level& level, const Bounds& box, Visit visit) const {
+void BroadPhase::visitOverlaps(std::span<const Entry> entries, const Level& level,
+                               const Bounds& box, Visit visit) {
     const Query query(box);
     const auto scan = [&](std::uint32_t from, std::uint32_t to, std::uint64_t lastKey) {
-        for (std::uint32_t i = from; i < to && m_entries[i].key <= lastKey; ++i) {
-            if (query.overlaps(m_entries[i])) visit(m_entries[i]);
+        for (std::uint32_t i = from; i < to && entries[i].key <= lastKey; ++i) {
+            if (query.overlaps(entries[i])) visit(entries[i]);
         }
     };
     const Cells cells = cellsAround(level.level, box);
@@ -324,9 +281,9 @@ void BroadPhase::visitOverlaps(const Level& level, const Bounds& box, Visit visi
     for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
         const std::uint64_t first = keyOf(level.level, row, cells.column0);
         const auto from =
-            std::lower_bound(m_entries.begin() + level.begin, m_entries.begin() + level.end, first,
+            std::lower_bound(entries.begin() + level.begin, entries.begin() + level.end, first,
                              [](const Entry& e, std::uint64_t key) { return e.key < key; });
-        scan(static_cast<std::uint32_t>(from - m_entries.begin()), level.end,
+        scan(static_cast<std::uint32_t>(from - entries.begin()), level.end,
              keyOf(level.level, row, cells.column1));
     }
 }
@@ -336,10 +293,8 @@ void BroadPhase::findFixed(std::uint32_t shape, const Bounds& box,
                            std::span<const ShapePair> forbidden,
                            std::vector<std::uint32_t>& out) const {
     const Entry mine = entryOf(shape, proxies[shape]);
-    for (const Level& level : m_levels) {
-        if (!level.hasFixed) continue;
-        visitOverlaps(level, box, [&](const Entry& other) {
-            if (proxies[other.shape()].dynamic) return;
+    for (const Level& level : m_fixedLevels) {
+        visitOverlaps(m_fixed, level, box, [&](const Entry& other) {
             if (mayPair(mine, other, proxies, forbidden)) out.push_back(other.shape());
         });
     }
@@ -423,29 +378,27 @@ void BroadPhase::joinBlock(std::uint32_t begin, std::uint32_t end,
 }
 
 void BroadPhase::joinAll(std::span<const ShapeProxy> proxies, std::span<const ShapePair> forbidden,
-                         Executor* executor, std::vector<ShapePair>& out) {
+                         Executor* executor) {
     const auto count = static_cast<std::uint32_t>(m_entries.size());
-    if (executor == nullptr || executor->threads() == 1 || count < joinSerially) {
-        joinBlock(0, count, proxies, forbidden, out);
-    } else {
-        std::vector<std::vector<ShapePair>> parts((count + joinGrain - 1) / joinGrain);
-        executor->forBlocks(count, joinGrain, [&](std::uint32_t begin, std::uint32_t end) {
-            joinBlock(begin, end, proxies, forbidden, parts[begin / joinGrain]);
-        });
-        for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
-    }
-    sortPairs(out, m_fat.size(), m_scratch);
+    // Fewer are joined and sorted before a team is awake.
+    if (count < joinSerially) executor = nullptr;
+    m_sorter.begin(m_fat.size(), (count + joinGrain - 1) / joinGrain);
+    overBlocks(executor, count, joinGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        joinBlock(begin, end, proxies, forbidden, m_sorter.block(begin / joinGrain));
+    });
+    m_sorter.sortInto(m_scratch.all, executor);
 }
 
 /// Pairs without a moved shape stay; those with one are found anew.
 void BroadPhase::joinMoved(std::span<const std::uint32_t> moved,
                            std::span<const ShapeProxy> proxies,
-                           std::span<const ShapePair> forbidden, std::vector<ShapePair>& out) {
-    std::vector<ShapePair> found;
+                           std::span<const ShapePair> forbidden) {
+    std::vector<ShapePair>& found = m_scratch.found;
+    found.clear();
     for (const std::uint32_t shape : moved) {
         const Entry mine = entryOf(shape, proxies[shape]);
         for (const Level& level : m_levels) {
-            visitOverlaps(level, m_fat[shape], [&](const Entry& other) {
+            visitOverlaps(m_entries, level, m_fat[shape], [&](const Entry& other) {
                 const std::uint32_t s = other.shape();
                 // Two moved shapes find each other: the lower one keeps the pair.
                 if (s == shape || (m_isMoved[s] && s < shape)) return;
@@ -454,18 +407,18 @@ void BroadPhase::joinMoved(std::span<const std::uint32_t> moved,
         }
     }
     std::sort(found.begin(), found.end());
-    m_scratch.clear();
+    std::vector<ShapePair>& stay = m_scratch.stay;
+    stay.clear();
     for (const ShapePair& p : m_pairs) {
-        if (!(m_isMoved[p.a] | m_isMoved[p.b])) m_scratch.push_back(p);
+        if (!(m_isMoved[p.a] | m_isMoved[p.b])) stay.push_back(p);
     }
-    out.resize(m_scratch.size() + found.size());
-    std::merge(m_scratch.begin(), m_scratch.end(), found.begin(), found.end(), out.begin());
+    m_scratch.all.resize(stay.size() + found.size());
+    std::merge(stay.begin(), stay.end(), found.begin(), found.end(), m_scratch.all.begin());
 }
 
 bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> travel,
                         std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                         std::span<const ShapePair> forbidden, Executor* executor) {
-    std::vector<ShapePair> fresh;
     const bool first = m_fat.size() != tight.size();
     if (!first && moved.empty()) {
         m_movedCount = 0;
@@ -476,7 +429,7 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
     if (first || moved.size() * joinAllFrom > m_entries.size()) {
         rebuildAll(tight, travel, proxies, executor);
         m_movedCount = static_cast<std::uint32_t>(first ? m_entries.size() : moved.size());
-        joinAll(proxies, forbidden, executor, fresh);
+        joinAll(proxies, forbidden, executor);
     } else {
         m_movedCount = static_cast<std::uint32_t>(moved.size());
         for (const std::uint32_t shape : moved) {
@@ -484,11 +437,11 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
             m_isMoved[shape] = 1;
         }
         moveEntries(moved, proxies);
-        joinMoved(moved, proxies, forbidden, fresh);
+        joinMoved(moved, proxies, forbidden);
         for (const std::uint32_t shape : moved) m_isMoved[shape] = 0;
     }
-    const bool changed = first || fresh != m_pairs;
-    m_pairs.swap(fresh);
+    const bool changed = first || m_scratch.all != m_pairs;
+    m_pairs.swap(m_scratch.all);
     return changed;
 }
 

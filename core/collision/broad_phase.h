@@ -14,34 +14,12 @@
 #include <span>
 #include <vector>
 
+#include "core/collision/shape_pair.h"
+#include "core/collision/shape_proxy.h"
 #include "core/math/vec.h"
 #include "core/parallel/executor.h"
-#include "core/scene/scene.h"
 
 namespace huestep {
-
-/// What decides, before any geometry, whether two shapes may form a pair.
-struct ShapeProxy {
-    std::uint32_t body = 0;  ///< place of the body
-    Filter filter;
-    bool dynamic = false;
-    bool jointed = false;  ///< the body has a joint that forbids contact with its other body
-    bool alone = false;    ///< no other shape may pair with it: it stays out of the broad phase
-    std::uint8_t kind = unknownKind;  ///< equal filter, `dynamic` and `jointed`: equal kind
-
-    static constexpr std::uint8_t unknownKind = 64;
-};
-
-/// Places of two shapes, a < b.
-struct ShapePair {
-    std::uint32_t a = 0;
-    std::uint32_t b = 0;
-    friend auto operator<=>(const ShapePair&, const ShapePair&) = default;
-};
-
-/// Numbers the kinds of shapes, below `unknownKind`, and marks the shapes that filters and types
-/// keep from every other shape. Where there are very many kinds all stay unknown and nobody alone.
-void sortIntoKinds(std::span<ShapeProxy> proxies);
 
 class BroadPhase {
  public:
@@ -80,11 +58,13 @@ class BroadPhase {
     struct alignas(32) Entry {
         float lowX = 0, lowY = 0, minusHighX = 0, minusHighY = 0;
         std::uint64_t key = 0;
-        std::uint32_t tag = 0;   // shape in bits 0 to 23, kind in bits 24 to 31
+        std::uint32_t tag = 0;   // shape in bits 0 to 23, kind in bits 24 to 30, fixed in bit 31
         std::uint32_t body = 0;  // place
 
         [[nodiscard]] std::uint32_t shape() const { return tag & 0xffffffu; }
-        [[nodiscard]] std::uint32_t kind() const { return tag >> 24; }
+        [[nodiscard]] std::uint32_t kind() const { return tag >> 24 & 0x7fu; }
+        /// Whether its body is not dynamic.
+        [[nodiscard]] bool fixed() const { return tag >> 31 != 0; }
     };
     static_assert(caps::maxShapes <= 0x1000000u);
     struct Query;
@@ -93,7 +73,15 @@ class BroadPhase {
         int level = 0;
         std::uint32_t begin = 0;
         std::uint32_t end = 0;
-        bool hasFixed = false;  // a shape whose body is not dynamic
+    };
+
+    /// Memory of one update, kept for the next; a copy starts with none.
+    struct Scratch {
+        Scratch() = default;
+        Scratch(const Scratch&) {}
+        Scratch& operator=(const Scratch&) { return *this; }
+        std::vector<Entry> entries;
+        std::vector<ShapePair> found, stay, all;
     };
 
     [[nodiscard]] Entry entryOf(std::uint32_t shape, const ShapeProxy& proxy) const;
@@ -104,26 +92,30 @@ class BroadPhase {
     void sortEntries();
     [[nodiscard]] bool mayPair(const Entry& a, const Entry& b, std::span<const ShapeProxy> proxies,
                                std::span<const ShapePair> forbidden) const;
-    void findLevels(std::span<const ShapeProxy> proxies);
+    void findLevels();
     template <class Visit>
-    void visitOverlaps(const Level& level, const Bounds& box, Visit visit) const;
+    static void visitOverlaps(std::span<const Entry> entries, const Level& level, const Bounds& box,
+                              Visit visit);
     void joinBlock(std::uint32_t begin, std::uint32_t end, std::span<const ShapeProxy> proxies,
                    std::span<const ShapePair> forbidden, std::vector<ShapePair>& out) const;
     void joinAll(std::span<const ShapeProxy> proxies, std::span<const ShapePair> forbidden,
-                 Executor* executor, std::vector<ShapePair>& out);
+                 Executor* executor);
     void joinMoved(std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
-                   std::span<const ShapePair> forbidden, std::vector<ShapePair>& out);
+                   std::span<const ShapePair> forbidden);
 
     std::vector<Bounds> m_fat;  // by shape
     // By kind, a bit a kind: with whom it may pair at all, and where a joint may forbid that.
     std::array<std::uint64_t, ShapeProxy::unknownKind> m_mayPair{}, m_mayForbid{};
     std::vector<Entry> m_entries;  // sorted by key, then shape
     std::vector<Level> m_levels;
+    std::vector<Entry> m_fixed;  // those of them whose body is not dynamic
+    std::vector<Level> m_fixedLevels;
     std::vector<ShapePair> m_pairs;
     std::vector<std::uint8_t> m_isMoved;  // by shape; all zero between updates
-    std::vector<ShapePair> m_scratch;
-    std::vector<Entry> m_entryScratch;
     std::uint32_t m_movedCount = 0;
+
+    PairSorter m_sorter;
+    Scratch m_scratch;
 };
 
 }  // namespace huestep

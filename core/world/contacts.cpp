@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t blockGrain = 16;  // of rows: 256 contacts
 constexpr std::uint32_t candidateGrain = 512;
+constexpr std::uint32_t layOutGrain = 4096;  // pairs
 // Kept manifolds may slide this part of the smaller shape's size: past that a small box would stand
 // on the air beside its ledge.
 constexpr float recyclePart = 0.2f;
@@ -79,7 +80,7 @@ void World::Data::dropContact(std::uint32_t contact) {
 
 /// Brings the candidates in line with the pairs: old ones keep their place in key order with their
 /// contact, and those whose pair is gone end.
-void World::Data::layOutCandidates() {
+void World::Data::layOutCandidates(Executor* executor) {
     Accelerators& acc = accelerators;
     std::vector<Candidate>& old = acc.candidateScratch;
     acc.candidates.swap(old);
@@ -100,31 +101,53 @@ void World::Data::layOutCandidates() {
         acc.candidatesValid = true;
     }
     acc.candidatesStamp = stamp;
-    acc.candidates.clear();
-    acc.candidates.reserve(acc.broadPhase.pairs().size());
-    auto from = old.begin();
-    const auto dropBefore = [&](const ShapePair* pair) {
-        for (; from != old.end() && (!pair || from->pair < *pair); ++from) {
-            if (from->contact == none) continue;
-            const Contact& contact = acc.contacts[from->contact];
+    const std::span<const ShapePair> pairs = acc.broadPhase.pairs();
+    acc.candidates.resize(pairs.size());
+    auto lost = perBlock<std::vector<Candidate>>(pairs.size() + 1, layOutGrain);
+    // Each block takes over the old ones up to the next block's first pair, the last one the rest.
+    overBlocks(executor, pairs.size() + 1, layOutGrain,
+               [&](std::uint32_t begin, std::uint32_t end) {
+                   const auto oldFrom = [&](std::uint32_t pair) {
+                       if (pair == 0) return old.begin();
+                       if (pair >= pairs.size()) return old.end();
+                       return std::lower_bound(
+                           old.begin(), old.end(), pairs[pair],
+                           [](const Candidate& c, const ShapePair& key) { return c.pair < key; });
+                   };
+                   auto from = oldFrom(begin);
+                   const auto last = end > pairs.size() ? old.end() : oldFrom(end);
+                   std::vector<Candidate>& mine = lost[begin / layOutGrain];
+                   for (std::uint32_t i = begin; i < end && i < pairs.size(); ++i) {
+                       for (; from != last && from->pair < pairs[i]; ++from) {
+                           if (from->contact != none) mine.push_back(*from);
+                       }
+                       const bool known = from != last && from->pair == pairs[i];
+                       acc.candidates[i] = {pairs[i], known ? (from++)->contact : none};
+                   }
+                   for (; from != last; ++from) {
+                       if (from->contact != none) mine.push_back(*from);
+                   }
+               });
+    std::vector<Candidate> resting;
+    for (const std::vector<Candidate>& part : lost) {
+        for (const Candidate& candidate : part) {
+            const Contact& contact = acc.contacts[candidate.contact];
             // A contact at rest stays as it is, whatever the bounds say: nobody looks at it.
             if (!isActive(activity[contact.bodyA] | activity[contact.bodyB])) {
-                acc.candidates.push_back(*from);
+                resting.push_back(candidate);
             } else {
                 events.ends.push_back(changeOf(contact));
-                dropContact(from->contact);
+                dropContact(candidate.contact);
             }
         }
-    };
-    for (const ShapePair& pair : acc.broadPhase.pairs()) {
-        dropBefore(&pair);
-        if (from != old.end() && from->pair == pair) {
-            acc.candidates.push_back(*from++);
-        } else {
-            acc.candidates.push_back({pair, none});
-        }
     }
-    dropBefore(nullptr);
+    if (resting.empty()) return;
+    const std::size_t paired = acc.candidates.size();
+    acc.candidates.insert(acc.candidates.end(), resting.begin(), resting.end());
+    std::inplace_merge(acc.candidates.begin(),
+                       acc.candidates.begin() + static_cast<std::ptrdiff_t>(paired),
+                       acc.candidates.end(),
+                       [](const Candidate& x, const Candidate& y) { return x.pair < y.pair; });
 }
 
 /// Takes the impulses of contacts whose manifold is kept out of the solver's rows. Others have had

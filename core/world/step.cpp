@@ -14,7 +14,7 @@ namespace {
 // meeting it at barriers costs more than it saves. Definitions alone decide.
 constexpr std::size_t parallelFrom = 512;
 constexpr std::uint32_t bodyGrain = 256;
-constexpr float travelTicks = 3.0f;  // how far ahead fat bounds look
+constexpr float travelTicks = 1.0f;  // how far ahead fat bounds look
 
 }  // namespace
 
@@ -141,7 +141,7 @@ void World::Data::findPairs(Executor* executor) {
     const bool changed = acc.broadPhase.update(acc.tight, acc.travel, left, shapes.proxies,
                                                shapes.forbidden, executor);
     if (fresh || !left.empty()) acc.broadPhaseStamp = stamp;
-    if (changed || fresh) layOutCandidates();
+    if (changed || fresh) layOutCandidates(executor);
 }
 
 /// Makes the plan again where contacts, joints or who moves have changed; otherwise plan and rows

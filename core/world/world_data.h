@@ -169,7 +169,7 @@ struct World::Data : Carried {
     void stopLeaps(const Moved& moved, Executor* executor);
 
     // contacts.cpp
-    void layOutCandidates();
+    void layOutCandidates(Executor* executor);
     std::uint32_t addContact(const Contact& contact);
     void dropContact(std::uint32_t contact);
     [[nodiscard]] ContactChange changeOf(const Contact& contact) const;

@@ -1,0 +1,89 @@
+#include "core/collision/shape_pair.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel/over_range.h"
+
+namespace huestep {
+
+namespace {
+
+constexpr int rangeBits = 9;
+constexpr std::uint32_t rangeShapes = 1u << rangeBits;
+constexpr std::ptrdiff_t handful = 16;  // pairs of one shape that are sorted by insertion
+
+}  // namespace
+
+void PairSorter::begin(std::size_t shapeCount, std::size_t count) {
+    m_shapeCount = shapeCount;
+    m_count = count;
+    if (m_blocks.size() < count) m_blocks.resize(count);
+    for (std::size_t i = 0; i < count; ++i) m_blocks[i].pairs.clear();
+}
+
+void PairSorter::sortInto(std::vector<ShapePair>& out, Executor* executor) {
+    const std::size_t ranges = (m_shapeCount >> rangeBits) + 1;
+    overRange(executor, m_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            Block& block = m_blocks[i];
+            block.next.assign(ranges, 0);
+            for (const ShapePair& p : block.pairs) ++block.next[p.a >> rangeBits];
+        }
+    });
+    m_rangeStart.resize(ranges + 1);
+    std::uint32_t sum = 0;
+    for (std::size_t range = 0; range < ranges; ++range) {
+        m_rangeStart[range] = sum;
+        for (std::size_t i = 0; i < m_count; ++i) {
+            const std::uint32_t of = m_blocks[i].next[range];
+            m_blocks[i].next[range] = sum;
+            sum += of;
+        }
+    }
+    m_rangeStart[ranges] = sum;
+    m_scattered.resize(sum);
+    overRange(executor, m_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            Block& block = m_blocks[i];
+            for (const ShapePair& p : block.pairs) {
+                m_scattered[block.next[p.a >> rangeBits]++] = p;
+            }
+        }
+    });
+    out.resize(sum);
+    overRange(executor, ranges, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t range = begin; range < end; ++range) sortRange(range, out);
+    });
+}
+
+void PairSorter::sortRange(std::uint32_t range, std::vector<ShapePair>& out) const {
+    const std::uint32_t first = m_rangeStart[range], last = m_rangeStart[range + 1];
+    if (first == last) return;
+    std::array<std::uint32_t, rangeShapes + 1> start{};
+    const auto slot = [](const ShapePair& p) { return p.a & (rangeShapes - 1); };
+    for (std::uint32_t i = first; i < last; ++i) ++start[slot(m_scattered[i]) + 1];
+    start[0] = first;
+    for (std::uint32_t s = 0; s < rangeShapes; ++s) start[s + 1] += start[s];
+    std::array<std::uint32_t, rangeShapes> next;
+    std::copy(start.begin(), start.end() - 1, next.begin());
+    for (std::uint32_t i = first; i < last; ++i) {
+        out[next[slot(m_scattered[i])]++] = m_scattered[i];
+    }
+    for (std::uint32_t s = 0; s < rangeShapes; ++s) {
+        // A handful mostly: by insertion. What is crowded is sorted as anything large is.
+        const auto from = out.begin() + start[s], to = out.begin() + start[s + 1];
+        if (to - from > handful) {
+            std::sort(from, to);
+            continue;
+        }
+        for (auto at = from; at != to; ++at) {
+            const ShapePair pair = *at;
+            auto place = at;
+            for (; place != from && pair.b < (place - 1)->b; --place) *place = *(place - 1);
+            *place = pair;
+        }
+    }
+}
+
+}  // namespace huestep
