@@ -317,6 +317,7 @@ Status Box2d3Engine::apply(const SetMotor& action) {
     } else {
         m_notes.add(pathOf("joint", action.joint), "its motor is not set on box2d3");
     }
+    b2Joint_WakeBodies(*joint);
     return Done{};
 }
 
