@@ -2,25 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "tests/tools/process.h"
+#include "tests/tools/document.h"
 
 namespace huestep::test {
 namespace {
-
-using Json = nlohmann::json;
-
-/// The one JSON document of a command that must end with `status`.
-Json documentOf(std::vector<std::string> words, int status = 0) {
-    words.push_back("--json");
-    const Ended ended = huestep(words);
-    EXPECT_EQ(ended.status, status) << ended.err;
-    Json document = Json::parse(ended.out, nullptr, false);
-    EXPECT_FALSE(document.is_discarded()) << ended.out;
-    return document;
-}
 
 TEST(Help, EverySubcommandAnswersWithAnExample) {
     for (const char* name :
@@ -125,34 +112,6 @@ TEST(Run, SeesNoFreeFlightWhereBodiesSleepAtTheStart) {
     }
 }
 
-TEST(Verify, FindsASmallWorldEqualInEveryOrderAfterNoiseAndRestores) {
-    const Json document = documentOf({"verify", "mixed", "--ticks", "90", "--threads", "1,2",
-                                      "--restore-every", "7", "--reorder"});
-    EXPECT_EQ(document["equal"], true) << document.value("difference", "");
-    std::set<std::string> stories;
-    for (const Json& row : document["combinations"]) {
-        stories.insert(row["story"]);
-        EXPECT_EQ(row["tick"], 90);
-    }
-    EXPECT_EQ(stories.size(), 5u);
-}
-
-TEST(Verify, FindsScriptedScenesEqualInEveryOrderAfterNoiseAndRestores) {
-    for (const char* scene :
-         {"rain:floors=1,columns=3,group=2,period=7", "junkyard:columns=20,rows=3"}) {
-        const Json document =
-            documentOf({"verify", scene, "--ticks", "130", "--threads", "1,3", "--simd", "scalar",
-                        "--restore-every", "11", "--reorder"});
-        EXPECT_EQ(document["equal"], true) << document.value("difference", "");
-    }
-}
-
-TEST(Verify, GivesAPeerTheCommandsOfAScriptedScene) {
-    const Json document = documentOf({"verify", "rain:floors=1,columns=2,group=1,period=5",
-                                      "--engine", "box2d", "--ticks", "40"});
-    EXPECT_EQ(document["equal"], true);
-}
-
 TEST(Run, StepsAScriptedSceneAndSaysNoDriftWhereBodiesCameAndWent) {
     const std::string rain = "rain:floors=1,columns=3,group=2,period=7";
     for (const char* engine : {"huestep", "box2d"}) {
@@ -171,79 +130,6 @@ TEST(Scenes, SayWhichOfThemAreScripted) {
     for (const Json& scene : document["scenes"])
         if (scene["scripted"] == true) scripted.insert(scene["name"]);
     EXPECT_EQ(scripted, (std::set<std::string>{"junkyard", "rain"}));
-}
-
-TEST(Verify, FindsEverySceneOfTheCatalogueEqualInEveryOrderAndAfterNoise) {
-    // Large scenes in small: what is tried is their kinds of bodies and joints.
-    const std::map<std::string, std::string> smaller = {
-        {"compounds", "compounds:columns=3,rows=3"},
-        {"joint_grid", "joint_grid:n=8"},
-        {"junkyard", "junkyard:columns=3,rows=3"},
-        {"many_pyramids", "many_pyramids:rows=2"},
-        {"pyramid", "pyramid:base=8"},
-        {"rain", "rain:floors=1,columns=2,group=1,period=3"},
-        {"smash", "smash:columns=4,rows=4"},
-        {"spinner", "spinner:bodies=20"},
-        {"tumbler", "tumbler:count=3"},
-        {"washer", "washer:count=5"}};
-    const Json scenes = documentOf({"scenes"});
-    ASSERT_GE(scenes["scenes"].size(), 8u);
-    for (const Json& scene : scenes["scenes"]) {
-        const std::string name = scene["name"];
-        const auto small = smaller.find(name);
-        const std::string text = small == smaller.end() ? name : small->second;
-        const Json document = documentOf(
-            {"verify", text, "--ticks", "12", "--threads", "2", "--simd", "scalar", "--reorder"});
-        EXPECT_EQ(document["equal"], true) << text << ": " << document.value("difference", "");
-    }
-}
-
-/// A scene file's name in the folder, with bodies at the given places and limits as given.
-std::string sceneFile(const TemporaryFolder& folder, const Json& bodies, const Json& limits) {
-    const std::string path = folder / "scene.json";
-    std::ofstream(path) << Json{{"version", 1}, {"bodies", bodies}, {"limits", limits}};
-    return path;
-}
-
-TEST(Verify, FindsRoomForNoiseBesideAWorldThatIsWideOrAtItsLimits) {
-    const TemporaryFolder folder;
-    const Json floor = {
-        {"position", {{"x", 950000}, {"y", 0}}},
-        {"shapes", Json::array({{{"kind", "segment"},
-                                 {"vertices",
-                                  Json::array({{{"x", -9000}, {"y", 0}}, {{"x", 9000}, {"y", 0}}})},
-                                 {"radius", 0}}})}};
-    const std::string path =
-        sceneFile(folder, Json::array({floor}),
-                  {{"bodies", 1000000}, {"shapes", 2000000}, {"joints", 1000000}});
-    const Json document =
-        documentOf({"verify", path, "--ticks", "10", "--threads", "1", "--reorder"});
-    EXPECT_EQ(document["equal"], true) << document.value("difference", "");
-}
-
-TEST(Verify, GivesTheSameAnswerForAnyNumberOfJobs) {
-    const std::vector<std::string> words = {"verify", "hinges:columns=2", "--ticks", "40",
-                                            "--reorder"};
-    std::vector<std::string> one = words;
-    one.insert(one.end(), {"--jobs", "1"});
-    std::vector<std::string> many = words;
-    many.insert(many.end(), {"--jobs", "5"});
-    EXPECT_EQ(documentOf(one), documentOf(many));
-}
-
-TEST(Verify, SaysWhereABox2dWorldDependsOnItsHistory) {
-    const Json document = documentOf(
-        {"verify", "pyramid:base=10", "--ticks", "120", "--engine", "box2d", "--reorder"}, 1);
-    EXPECT_EQ(document["equal"], false);
-    EXPECT_EQ(document["combinations"][0]["equal"], true) << "the same history, the same world";
-    int different = 0;
-    for (const Json& row : document["combinations"])
-        if (!row["equal"]) {
-            ++different;
-            EXPECT_GE(row["differs_at"], 1);
-            EXPECT_NE(row["difference"].get<std::string>().find("body "), std::string::npos);
-        }
-    EXPECT_GE(different, 1);
 }
 
 TEST(Diff, NamesTheFieldInWhichTwoSnapshotsDiffer) {
@@ -380,12 +266,6 @@ TEST(Run, ExplainsHowItsLastStepWasLaidOut) {
     EXPECT_EQ(explained["largest_islands"][0]["bodies"], 55);
     EXPECT_GT(explained["bytes_touched"].get<double>(), 440 * 32.0);
     EXPECT_FALSE(documentOf({"run", "small:n=3", "--ticks", "2"}).contains("explain"));
-}
-
-TEST(Verify, SaysWhatAPeerLeavesOutOfTheScene) {
-    const std::vector<std::string> words = {"verify", "mixed", "--ticks", "2", "--engine", "box2d"};
-    EXPECT_FALSE(documentOf(words)["notes"].empty());
-    EXPECT_EQ(linesWith(huestep(words).err, "capsule"), 1);
 }
 
 /// A command that takes long is stopped as soon as it can be; what it says in the end.
