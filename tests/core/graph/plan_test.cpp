@@ -156,6 +156,61 @@ TEST(Plan, HoldsEveryLinkAndBodyOnceAndKeepsIslandsWholeForAnySizeOfBatch) {
     }
 }
 
+/// Bodies that all move, with links of contacts between them.
+Case movers(std::uint32_t bodies, std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs) {
+    Case c;
+    c.moves.assign(bodies, 1);
+    for (std::uint32_t i = 0; i < bodies; ++i) c.awake.push_back(i);
+    for (const auto& [a, b] : pairs) {
+        c.links.push_back({a, b, static_cast<std::uint32_t>(c.links.size())});
+    }
+    return c;
+}
+
+TEST(Plan, OfAPathACliqueAndAForestIsSoundAndHasTheirColours) {
+    constexpr std::uint32_t length = 3000, members = 30, trees = 495;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> path, clique, forest;
+    for (std::uint32_t i = 1; i < length; ++i) path.push_back({i - 1, i});
+    for (std::uint32_t i = 0; i < members; ++i) {
+        for (std::uint32_t j = i + 1; j < members; ++j) clique.push_back({i, j});
+    }
+    for (std::uint32_t i = 0; i < trees; ++i) {
+        for (std::uint32_t leaf = 1; leaf < 4; ++leaf) forest.push_back({4 * i, 4 * i + leaf});
+    }
+    for (const std::uint32_t batchSize : {0u, 1u, 99u, standardBatchSize, 100'000u}) {
+        SCOPED_TRACE("batches of " + std::to_string(batchSize));
+        const Case one = movers(length, path), all = movers(members, clique),
+                   many = movers(4 * trees, forest);
+        const Plan thin = planOf(one, batchSize);
+        ASSERT_NO_FATAL_FAILURE(expectSound(one, thin));
+        EXPECT_EQ(thin.islands, 1u);
+        EXPECT_EQ(thin.batches.size(), 1u);
+        EXPECT_EQ(thin.colours, 2u);
+        const Plan dense = planOf(all, batchSize);
+        ASSERT_NO_FATAL_FAILURE(expectSound(all, dense));
+        EXPECT_GE(dense.colours, members - 1);  // as many as links at a body
+        EXPECT_LE(dense.colours, 2 * (members - 1) - 1);
+        EXPECT_EQ(dense.overflow, 0u);
+        const Plan wide = planOf(many, batchSize);
+        ASSERT_NO_FATAL_FAILURE(expectSound(many, wide));
+        EXPECT_EQ(wide.islands, trees);
+        EXPECT_EQ(wide.colours, 3u);
+        // Each tree has three links: a batch takes as many as fit, but one at least.
+        const std::uint32_t fit = std::max(1u, batchSize / 3);
+        EXPECT_EQ(wide.batches.size(), (trees + fit - 1) / fit);
+    }
+}
+
+TEST(Plan, OfSleepersAndFixedBodiesHasNothingToSolve) {
+    Case c;
+    c.moves.assign(100, 0);
+    const Plan plan = planOf(c, standardBatchSize);
+    expectSound(c, plan);
+    EXPECT_EQ(plan.islands, 0u);
+    EXPECT_TRUE(plan.batches.empty());
+    EXPECT_TRUE(plan.freeBodies.empty());
+}
+
 TEST(Plan, KeepsWhatOverflowsAtAHubInKeyOrderOutOfTheLanes) {
     // Two hubs: one pinned to 80 bodies that move, one to 80 that do not. Colours are 64.
     Case c;
