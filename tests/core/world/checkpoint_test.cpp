@@ -10,8 +10,17 @@
 #include "tests/determinism/random_scene.h"
 #include "tests/determinism/script.h"
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// A sanitizer brings its own operators; g++ and clang say each in its way that there is one.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#elif defined(__has_feature)
+#if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)
 #define HUESTEP_COUNT_ALLOCATIONS 1
+#endif
+#else
+#define HUESTEP_COUNT_ALLOCATIONS 1
+#endif
+
+#ifdef HUESTEP_COUNT_ALLOCATIONS
 
 namespace {
 std::size_t allocations = 0;
