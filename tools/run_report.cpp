@@ -88,6 +88,7 @@ void RunReport::add(const StepReport& step) {
     for (std::size_t s = 0; s < stageCount; ++s) inside->stageNanoseconds[s] += step.nanoseconds[s];
     inside->constraints += step.contacts + step.joints;
     inside->overflow += step.overflow;
+    inside->inBuckets += step.inBuckets;
     inside->mostColours = std::max(inside->mostColours, step.colours);
 }
 
@@ -137,6 +138,7 @@ Json RunReport::asJson() const {
     json["batches"] = inside->last.batches;
     json["colours"] = inside->mostColours;
     json["overflow_share"] = share(inside->overflow, inside->constraints);
+    json["bucket_share"] = share(inside->inBuckets, inside->constraints);
     json["waited_ms"] = milliseconds(inside->waited);
     if (inside->layout) json["explain"] = explanation(*inside->layout);
     json["state"] = {{"bytes_a_body", sizeof(BodyMotion)},
@@ -188,9 +190,12 @@ void RunReport::printInside() const {
     std::printf("awake        %u bodies, %u joints of %zu, %u pairs, %u contacts recycled\n",
                 in.last.awakeBodies, in.last.joints, in.jointCount, in.last.pairs,
                 in.last.recycled);
-    std::printf("graph        %u islands, %u batches, at most %u colours, overflow %s %%\n",
-                in.last.islands, in.last.batches, in.mostColours,
-                number(100.0 * share(in.overflow, in.constraints)).c_str());
+    std::printf(
+        "graph        %u islands, %u batches, at most %u colours, hubs' buckets %s %%, overflow %s "
+        "%%\n",
+        in.last.islands, in.last.batches, in.mostColours,
+        number(100.0 * share(in.inBuckets, in.constraints)).c_str(),
+        number(100.0 * share(in.overflow, in.constraints)).c_str());
     std::printf("waited, ms  %s (by thread, in all)\n", waits.c_str());
     if (in.layout) printLayout();
     std::printf(

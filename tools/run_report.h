@@ -32,6 +32,7 @@ struct RunInside {
     std::array<std::uint64_t, static_cast<std::size_t>(Stage::Count)> stageNanoseconds{};
     std::uint64_t constraints = 0;  ///< sum over ticks
     std::uint64_t overflow = 0;     ///< sum over ticks
+    std::uint64_t inBuckets = 0;    ///< sum over ticks
     std::uint32_t mostColours = 0;
     std::size_t jointCount = 0;
     std::vector<std::uint64_t> waited;  ///< ns, by worker

@@ -3,9 +3,10 @@ import { outlinesOf, trace } from './outline.js';
 
 /**
  * Graph colours as the server numbers them (core/graph/coloring.h): 0 to 63 for contacts between
- * two moving bodies, from 65 for those with one, 255 for what found no colour.
+ * two moving bodies, 65 for those of hubs, from 66 for those with one moving body, 131 for those of
+ * hubs with one, 255 for what found no colour.
  */
-export const firstFixedColour = 65;
+export const firstFixedColour = 66;
 export const overflowColour = 255;
 /** Colours beyond the last of the palette share its last entry. */
 export const paletteSize = 12;

@@ -51,6 +51,21 @@ inline void prefetch(const Contact& contact) {
     for (std::size_t line = 0; line < sizeof(Contact); line += 64) __builtin_prefetch(from + line);
 }
 
+/// The effective masses of a point's two rows: 1/(m⁻¹ + I⁻¹ (r × d)²), d the row's direction.
+struct RowMasses {
+    float normal = 0;   ///< kg
+    float tangent = 0;  ///< kg
+};
+
+/// `mass`: the sum of both bodies' inverse masses, 1/kg; inertias inverse too, 1/(kg·m²).
+inline RowMasses rowMasses(Vec2 rA, Vec2 rB, Vec2 normal, float mass, float inertiaA,
+                           float inertiaB) {
+    const float rnA = cross(rA, normal), rnB = cross(rB, normal);
+    const float rtA = dot(rA, normal), rtB = dot(rB, normal);  // r × t = −r·n for t = (ny, −nx)
+    return {inverseOrZero(mass + inertiaA * rnA * rnA + inertiaB * rnB * rnB),
+            inverseOrZero(mass + inertiaA * rtA * rtA + inertiaB * rtB * rtB)};
+}
+
 /// The impulses of a contact as the next step starts from them.
 struct ContactImpulses {
     std::array<float, 2> normal{};   ///< N·s, ≥ 0

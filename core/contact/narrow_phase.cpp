@@ -66,12 +66,9 @@ void setManifold(Contact& contact, const Pose& made, const Manifold& manifold) {
         p.anchorBy = rB.y;
         p.madeSeparation = manifold.points[i].separation;
         contact.feature[i] = manifold.points[i].feature;
-        const float rnA = cross(rA, n), rnB = cross(rB, n);
-        const float rtA = dot(rA, n), rtB = dot(rB, n);  // r × t = −r·n for t = (ny, −nx)
-        p.normalMass =
-            inverseOrZero(m + row.inverseInertiaA * rnA * rnA + row.inverseInertiaB * rnB * rnB);
-        p.tangentMass =
-            inverseOrZero(m + row.inverseInertiaA * rtA * rtA + row.inverseInertiaB * rtB * rtB);
+        const RowMasses masses = rowMasses(rA, rB, n, m, row.inverseInertiaA, row.inverseInertiaB);
+        p.normalMass = masses.normal;
+        p.tangentMass = masses.tangent;
     }
 }
 

@@ -12,9 +12,10 @@ void color(std::span<const ConstraintBodies> constraints, std::uint32_t bodyCoun
         std::uint64_t fixed = 0;
     };
     std::vector<Used> used(bodyCount);
-    colours.resize(constraints.size());
+    colours.resize(constraints.size(), 0);
     for (std::size_t i = 0; i < constraints.size(); ++i) {
         const ConstraintBodies c = constraints[i];
+        if (isHub(colours[i])) continue;
         assert(c.a >= 0 || c.b >= 0);
         if (c.a >= 0 && c.b >= 0) {
             Used& a = used[static_cast<std::size_t>(c.a)];

@@ -10,14 +10,15 @@ namespace {
 /// Working memory of one call.
 struct Builder {
     Plan& plan;
-    std::uint32_t batchSize;
+    PlanLimits limits;
 
     std::vector<std::uint8_t> moves;           // by body: whether it is awake
     std::vector<std::uint32_t> constraintsOf;  // island representative → constraints
     std::vector<std::uint32_t> batchOf;        // island representative → batch
-    std::vector<std::uint32_t> linkOrder;      // links by batch, key order within
-    std::vector<std::uint32_t> linkStart;      // batch → first in linkOrder
-    std::vector<BodyPlace> placeOf;            // body → solver place, in the batch at hand
+    std::vector<std::uint32_t> batchOfLink;
+    std::vector<std::uint32_t> linkOrder;  // links by batch, key order within
+    std::vector<std::uint32_t> linkStart;  // batch → first in linkOrder
+    std::vector<BodyPlace> placeOf;        // body → solver place, in the batch at hand
 
     [[nodiscard]] std::uint32_t islandOf(const Link& link) const {
         return plan.islandOf[moves[link.a] ? link.a : link.b];
@@ -29,7 +30,9 @@ struct Builder {
     void placeBodies(std::uint32_t batch);
     void colourBatch(std::uint32_t batch);
     void layOut(std::uint32_t batch, std::span<const ConstraintBodies> places,
-                std::span<const std::uint8_t> colours);
+                std::span<const std::uint8_t> colours, std::span<const HubRun> hubs);
+    void layOutHubs(std::uint32_t batch, std::uint8_t colour,
+                    std::span<const ConstraintBodies> places, std::span<const HubRun> hubs);
 };
 
 void Builder::findAllIslands() {
@@ -58,8 +61,8 @@ void Builder::packBatches() {
             continue;
         }
         ++plan.islands;
-        const bool giant = size > batchSize;
-        if (giant || open == none || plan.batches[open].constraints + size > batchSize) {
+        const bool giant = size > limits.batchSize;
+        if (giant || open == none || plan.batches[open].constraints + size > limits.batchSize) {
             const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
             plan.batches.push_back({});
             plan.batches.back().giant = giant;
@@ -74,12 +77,16 @@ void Builder::packBatches() {
 
 void Builder::sortLinks() {
     linkStart.assign(plan.batches.size() + 1, 0);
-    for (const Link& link : plan.links) ++linkStart[batchOf[islandOf(link)] + 1];
+    batchOfLink.resize(plan.links.size());
+    for (std::size_t i = 0; i < plan.links.size(); ++i) {
+        batchOfLink[i] = batchOf[islandOf(plan.links[i])];
+        ++linkStart[batchOfLink[i] + 1];
+    }
     for (std::size_t i = 1; i < linkStart.size(); ++i) linkStart[i] += linkStart[i - 1];
     std::vector<std::uint32_t> next(linkStart.begin(), linkStart.end() - 1);
     linkOrder.resize(plan.links.size());
     for (std::uint32_t i = 0; i < plan.links.size(); ++i) {
-        linkOrder[next[batchOf[islandOf(plan.links[i])]]++] = i;
+        linkOrder[next[batchOfLink[i]]++] = i;
     }
 }
 
@@ -118,9 +125,24 @@ void Builder::colourBatch(std::uint32_t batch) {
         places.push_back(c);
         local.push_back({c.a >= 0 ? c.a - first : fixedWorld, c.b >= 0 ? c.b - first : fixedWorld});
     }
-    std::vector<std::uint8_t> colours;
+    // The batch's contacts come after its joints.
+    const auto begin = linkOrder.begin() + linkStart[batch];
+    const auto joints = static_cast<std::uint32_t>(
+        std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(local.size()),
+                         plan.jointLinks) -
+        begin);
+    std::vector<HubRun> hubs = findHubs(std::span<const ConstraintBodies>(local).subspan(joints),
+                                        b.endPlace - b.firstPlace, limits.hubDegree);
+    std::vector<std::uint8_t> colours(local.size(), 0);
+    for (HubRun& run : hubs) {
+        run.hub += first;
+        for (std::uint32_t& i : run.constraints) {
+            i += joints;
+            colours[i] = run.fixed ? fixedHubColour : hubColour;
+        }
+    }
     color(local, b.endPlace - b.firstPlace, colours);
-    layOut(batch, places, colours);
+    layOut(batch, places, colours, hubs);
 }
 
 /// Lanes of one kind of constraint: which constraint is in which, block by block of 16.
@@ -141,9 +163,9 @@ struct Lanes {
 
 /// Runs of the batch in solving order; within a colour joints come first, then joints in lanes,
 /// then contacts, each in key order. The overflow is solved one by one in key order, so its joints
-/// stay together.
+/// stay together. A hub has a run for each of `hubs`.
 void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> places,
-                     std::span<const std::uint8_t> colours) {
+                     std::span<const std::uint8_t> colours, std::span<const HubRun> hubs) {
     enum Kind : std::uint8_t { Joint, RevoluteLane, ContactLane };
     const std::uint32_t begin = linkStart[batch];
     const auto kindOf = [&](std::uint32_t link, std::uint8_t colour) {
@@ -167,6 +189,10 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
     for (std::size_t c = 0; c < colourCount; ++c) {
         const auto& count = counts[c];
         if (count[Joint] + count[RevoluteLane] + count[ContactLane] == 0) continue;
+        if (isHub(static_cast<std::uint8_t>(c))) {
+            layOutHubs(batch, static_cast<std::uint8_t>(c), places, hubs);
+            continue;
+        }
         ColourRun run;
         run.colour = static_cast<std::uint8_t>(c);
         run.firstBlock = contacts.blocks();
@@ -190,6 +216,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
     b.endJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
+        if (isHub(colours[i])) continue;
         const std::uint32_t link = linkOrder[begin + i];
         const Kind kind = kindOf(link, colours[i]);
         const std::uint32_t at = next[colours[i]][kind]++;
@@ -207,27 +234,82 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
             touched[static_cast<std::size_t>(readPlace(place))] = 1;
         }
     }
+    plan.sharesOfBlock.resize(contacts.blocks(), 0);
+    // A copy starts warm as its hub does.
+    for (std::uint32_t r = b.firstColour; r < b.endColour; ++r) {
+        const ColourRun& run = plan.runs[r];
+        if (!isHub(run.colour)) continue;
+        std::fill_n(plan.hasJoint.begin() + run.firstCopy, blockLanes, plan.hasJoint[run.hub]);
+    }
+}
+
+/// The runs of hubs of one of the two colours: every lane's hub is a copy.
+void Builder::layOutHubs(std::uint32_t batch, std::uint8_t colour,
+                         std::span<const ConstraintBodies> places, std::span<const HubRun> hubs) {
+    Lanes contacts{plan.contactOfLane, plan.lanePlaces};
+    std::uint32_t hub = 0, firstCopy = 0;
+    for (const HubRun& of : hubs) {
+        if (of.fixed != (colour == fixedHubColour)) continue;
+        if (static_cast<std::uint32_t>(of.hub) != hub) {
+            hub = static_cast<std::uint32_t>(of.hub);
+            firstCopy = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
+            plan.bodyOfPlace.insert(plan.bodyOfPlace.end(), blockLanes, plan.bodyOfPlace[hub]);
+            plan.isCopy.resize(plan.bodyOfPlace.size(), 1);
+            plan.hasContact.resize(plan.bodyOfPlace.size(), 1);
+            plan.hasJoint.resize(plan.bodyOfPlace.size(), 0);
+            plan.hasContact[hub] = 1;
+        }
+        ColourRun run;
+        run.colour = colour;
+        run.firstBlock = contacts.blocks();
+        run.contactCount = static_cast<std::uint32_t>(of.constraints.size());
+        run.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
+        run.firstRevoluteBlock =
+            static_cast<std::uint32_t>(plan.revoluteOfLane.size()) / blockLanes;
+        run.hub = hub;
+        run.firstCopy = firstCopy;
+        plan.runs.push_back(run);
+        plan.inBuckets += run.contactCount;
+        contacts.grow(run.contactCount);
+        plan.sharesOfBlock.resize(run.firstBlock, 0);
+        for (std::uint32_t left = run.contactCount; left > 0;) {
+            const std::uint32_t lanes = std::min<std::uint32_t>(left, blockLanes);
+            plan.sharesOfBlock.push_back(static_cast<std::uint8_t>(lanes));
+            left -= lanes;
+        }
+        for (std::uint32_t k = 0; k < run.contactCount; ++k) {
+            const std::uint32_t i = of.constraints[k];
+            const auto copy = static_cast<BodyPlace>(firstCopy + k % blockLanes);
+            const std::uint32_t lane = run.firstBlock * blockLanes + k;
+            ConstraintBodies c = places[i];
+            (c.a == of.hub ? c.a : c.b) = copy;
+            contacts.sourceOf[lane] = plan.links[linkOrder[linkStart[batch] + i]].source;
+            contacts.places[lane] = c;
+            const BodyPlace other = c.a == copy ? c.b : c.a;
+            plan.hasContact[static_cast<std::size_t>(readPlace(other))] = 1;
+        }
+    }
 }
 
 }  // namespace
 
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount,
-              std::uint32_t batchSize) {
+              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount, PlanLimits limits) {
     plan.links = std::move(links);
     plan.jointLinks = jointLinks;
     plan.awake = std::move(awake);
     plan.runs.clear();
     plan.contactOfLane.clear();
     plan.lanePlaces.clear();
+    plan.sharesOfBlock.clear();
     plan.jointOrder.clear();
     plan.jointPlaces.clear();
     plan.revoluteOfLane.clear();
     plan.revolutePlaces.clear();
     plan.colourOfLink.assign(plan.links.size(), 0);
-    plan.colours = plan.overflow = 0;
+    plan.colours = plan.overflow = plan.inBuckets = 0;
 
-    Builder builder{plan, batchSize, {}, {}, {}, {}, {}, {}};
+    Builder builder{plan, limits, {}, {}, {}, {}, {}, {}, {}};
     builder.moves.assign(bodyCount, 0);
     for (const std::uint32_t body : plan.awake) builder.moves[body] = 1;
     builder.findAllIslands();
@@ -235,6 +317,7 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     builder.sortLinks();
     builder.placeOf.assign(bodyCount, fixedWorld);
     plan.bodyOfPlace.assign(1, none);
+    plan.isCopy.assign(1, 0);
     plan.hasContact.assign(1, 0);
     plan.hasJoint.assign(1, 0);
 
@@ -251,9 +334,11 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
             plan.bodyOfPlace.push_back(body);
         }
         plan.batches[batch].endPlace = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
+        plan.isCopy.resize(plan.bodyOfPlace.size(), 0);
         plan.hasContact.resize(plan.bodyOfPlace.size(), 0);
         plan.hasJoint.resize(plan.bodyOfPlace.size(), 0);
         builder.colourBatch(batch);
+        plan.batches[batch].endCopy = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
     }
 }
 

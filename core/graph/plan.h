@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/graph/coloring.h"
+#include "core/graph/hubs.h"
 #include "core/graph/islands.h"
 #include "core/state/records.h"
 
@@ -26,12 +27,16 @@ struct ColourRun {
     std::uint32_t firstRevoluteBlock = 0;
     std::uint32_t revoluteCount = 0;
     std::uint8_t colour = 0;
+    // Of a hub's run, which has contacts only: solver places.
+    std::uint32_t hub = 0;
+    std::uint32_t firstCopy = 0;  ///< of `blockLanes`
 };
 
 /// Whole islands that one thread solves through all substeps without a barrier, or one island that
 /// is larger than a batch and is solved by all threads, a barrier a colour.
 struct Batch {
-    std::uint32_t firstPlace = 0, endPlace = 0;    ///< solver bodies
+    std::uint32_t firstPlace = 0, endPlace = 0;  ///< solver bodies
+    std::uint32_t endCopy = 0;                   ///< from `endPlace` on: the lanes' copies of hubs
     std::uint32_t firstColour = 0, endColour = 0;  ///< runs
     std::uint32_t firstBlock = 0, endBlock = 0;    ///< of contacts
     std::uint32_t firstJoint = 0, endJoint = 0;    ///< in solving order
@@ -50,13 +55,15 @@ struct Plan {
     std::vector<std::uint32_t> awake;  ///< places of awake dynamic bodies, rising; made from
 
     std::vector<std::uint32_t> bodyOfPlace;  ///< solver place → body; place 0: none
-    std::vector<std::uint8_t> hasContact;    ///< solver place → whether a contact row touches it
-    std::vector<std::uint8_t> hasJoint;      ///< solver place → whether a joint row touches it
+    std::vector<std::uint8_t> isCopy;  ///< solver place → whether it is a lane's copy of a hub
+    std::vector<std::uint8_t> hasContact;  ///< solver place → whether a contact row touches it
+    std::vector<std::uint8_t> hasJoint;    ///< solver place → whether a joint row touches it
     std::vector<Batch> batches;
     std::vector<ColourRun> runs;
     std::vector<std::uint32_t> contactOfLane;  ///< block · 16 + lane → contact, or `none`
     std::vector<ConstraintBodies> lanePlaces;  ///< likewise → solver places
-    std::vector<std::uint32_t> jointOrder;     ///< in solver order → joint
+    std::vector<std::uint8_t> sharesOfBlock;  ///< block → lanes that share a hub's mass; 0: no hub
+    std::vector<std::uint32_t> jointOrder;    ///< in solver order → joint
     std::vector<ConstraintBodies> jointPlaces;
     std::vector<std::uint32_t> revoluteOfLane;     ///< block · 16 + lane → joint, or `none`
     std::vector<ConstraintBodies> revolutePlaces;  ///< likewise → solver places
@@ -64,14 +71,20 @@ struct Plan {
     std::vector<std::uint32_t> islandOf;           ///< body → lowest body of its island
     std::vector<std::uint8_t> colourOfLink;
     std::uint32_t islands = 0;
-    std::uint32_t colours = 0;   ///< most in any batch
-    std::uint32_t overflow = 0;  ///< constraints in overflow
+    std::uint32_t colours = 0;    ///< most in any batch
+    std::uint32_t overflow = 0;   ///< constraints in overflow
+    std::uint32_t inBuckets = 0;  ///< contacts of hubs
+};
+
+/// What may differ from the standard in tests only. No result depends on `batchSize`.
+struct PlanLimits {
+    std::uint32_t batchSize = standardBatchSize;
+    std::uint32_t hubDegree = standardHubDegree;
 };
 
 /// Makes the plan. `links` and `awake` are moved in; bodies that are not awake are read by the
-/// solver and never written; `batchSize` may differ in tests only: no result depends on it.
+/// solver and never written.
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount,
-              std::uint32_t batchSize = standardBatchSize);
+              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount, PlanLimits limits = {});
 
 }  // namespace huestep

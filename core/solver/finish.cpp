@@ -93,7 +93,8 @@ Moved SoftStep::finish(const Plan& plan, const SolverWorld& world, Executor* exe
     overRange(executor, places, bodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t place = std::max(begin, 1u); place < end; ++place) {
             const std::uint32_t body = plan.bodyOfPlace[place];
-            if (!world.bodies[body].dynamic()) continue;  // copies of kinematic bodies
+            // Neither kinematic bodies nor the lanes' copies of hubs.
+            if (!world.bodies[body].dynamic() || plan.isCopy[place] != 0) continue;
             const SolverBody& s = m_bodies[place];
             const BodyMotion& motion = world.motions[body];
             BodyMotion next = motion;

@@ -1,7 +1,9 @@
 #include "core/solver/soft_step.h"
 
 #include <algorithm>
+#include <array>
 
+#include "core/math/lanes.h"
 #include "core/math/trig.h"
 #include "core/parallel/over_range.h"
 #include "core/solver/contact_kernels.h"
@@ -40,7 +42,7 @@ struct Share {
 }  // namespace
 
 bool isShared(const ColourRun& run) {
-    return !isSerial(run.colour) &&
+    return !isSerial(run.colour) && !isHub(run.colour) &&
            run.contactCount + run.revoluteCount + jointsAsLanes * run.jointCount >= sharedFrom;
 }
 
@@ -93,9 +95,43 @@ const SoftStep::Sweep SoftStep::relaxSweep{solveJoint, &RevoluteKernels::solve,
                                            &ContactKernels::relax};
 const SoftStep::Sweep SoftStep::restituteSweep{nullptr, nullptr, &ContactKernels::restitute};
 
+/// A hub's contacts, bucket by bucket: each lane works on a copy of the hub with its share of the
+/// mass, and the mean of the copies is what becomes of the hub. The sum has a fixed shape of eight
+/// lanes, whatever the kernel's width.
+void SoftStep::sweepHub(const ColourRun& run, ContactKernel kernel, const ContactPass& pass) {
+    constexpr std::uint32_t sumLanes = 8;
+    SolverBody& hub = m_bodies[run.hub];
+    SolverBody* copies = m_bodies.data() + run.firstCopy;
+    for (std::uint32_t first = 0; first < run.contactCount; first += blockLanes) {
+        const std::uint32_t lanes =
+            std::min(run.contactCount - first, static_cast<std::uint32_t>(blockLanes));
+        const auto shares = static_cast<float>(lanes);
+        const LaneF<4> before = loadLanes<4>(&hub.vx);
+        SolverBody share = hub;
+        share.inverseMass = shares * hub.inverseMass;
+        std::fill_n(copies, lanes, share);
+        kernel(m_bodies.data(), m_blocks.data() + run.firstBlock + first / blockLanes, lanes, pass);
+        std::array<LaneF<4>, sumLanes> sum{};
+        for (std::uint32_t i = 0; i < lanes; ++i) {
+            sum[i % sumLanes] += loadLanes<4>(&copies[i].vx) - before;
+        }
+        const LaneF<4> change =
+            ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+        const LaneF<4> after = before + change / splat<4>(shares);
+        hub.vx = after[0];
+        hub.vy = after[1];
+        hub.w = after[2];
+    }
+}
+
 /// This worker's share of one colour; of a colour that is not shared, all of it on one.
 void SoftStep::sweepColour(const ColourRun& run, const Sweep& sweep, const JointPass& joint,
                            const Pass& pass, int worker, int workers) {
+    const ContactPass& contactPass = run.colour >= firstFixedColour ? pass.fixed : pass.moving;
+    if (isHub(run.colour)) {
+        sweepHub(run, pass.contacts->*sweep.contact, contactPass);
+        return;
+    }
     // Constraints of the overflow share bodies: one by one, in key order.
     const bool serial = isSerial(run.colour);
     const auto shareOf = [&](std::uint32_t count) { return Share(count, worker, workers); };
@@ -118,8 +154,7 @@ void SoftStep::sweepColour(const ColourRun& run, const Sweep& sweep, const Joint
                });
     const ContactKernels& contacts = serial ? contactKernels(Simd::Scalar) : *pass.contacts;
     overBlocks(run.contactCount, [&](std::uint32_t first, std::uint32_t n) {
-        (contacts.*sweep.contact)(bodies, m_blocks.data() + run.firstBlock + first, n,
-                                  run.colour >= firstFixedColour ? pass.fixed : pass.moving);
+        (contacts.*sweep.contact)(bodies, m_blocks.data() + run.firstBlock + first, n, contactPass);
     });
 }
 
@@ -201,7 +236,7 @@ void SoftStep::solveGiant(const Plan& plan, const SolverWorld& world, const Batc
             f(Range{first + begin, first + end}, begin / grain);
         });
     };
-    over(batch.firstPlace, batch.endPlace, bodyGrain,
+    over(batch.firstPlace, batch.endCopy, bodyGrain,
          [&](Range range, std::uint32_t) { prepareBodies(plan, world, range); });
     over(batch.firstJoint, batch.endJoint, jointGrain,
          [&](Range range, std::uint32_t) { prepareJoints(plan, world, range); });
@@ -266,7 +301,7 @@ void SoftStep::solve(const Plan& plan, const SolverWorld& world, Simd simd, Exec
             const Batch& batch = plan.batches[small[i]];
             Pass mine = pass;
             ContactFeatures features;
-            prepareBodies(plan, world, {batch.firstPlace, batch.endPlace});
+            prepareBodies(plan, world, {batch.firstPlace, batch.endCopy});
             prepareJoints(plan, world, {batch.firstJoint, batch.endJoint});
             prepareRevolutes(plan, world, {batch.firstRevoluteBlock, batch.endRevoluteBlock});
             prepareBlocks(plan, world, *pass.contacts, {batch.firstBlock, batch.endBlock},

@@ -14,7 +14,7 @@ namespace {
 // meeting it at barriers costs more than it saves. Definitions alone decide.
 constexpr std::size_t parallelFrom = 512;
 constexpr std::uint32_t bodyGrain = 256;
-constexpr float travelTicks = 1.0f;  // how far ahead fat bounds look
+constexpr float travelTicks = 2.0f;  // how far ahead fat bounds look
 
 }  // namespace
 
@@ -176,12 +176,12 @@ void World::Data::updatePlan(Executor* executor) {
             if (moves(body)) awake.push_back(body);
         }
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
-                 static_cast<std::uint32_t>(state.bodies.size()));
+                 static_cast<std::uint32_t>(state.bodies.size()), planLimits);
         acc.planStamp = stamp;
     } else {
         for (const std::uint32_t lane : acc.freshLanes) {
             acc.rowStamps[lane / blockLanes] = stamp;
-            acc.solver.writeRow(lane, acc.contacts[plan.contactOfLane[lane]]);
+            acc.solver.writeRow(plan, lane, acc.contacts[plan.contactOfLane[lane]]);
         }
     }
     report.contacts = static_cast<std::uint32_t>(acc.contacts.size() - acc.freeContacts.size());
@@ -191,6 +191,7 @@ void World::Data::updatePlan(Executor* executor) {
     report.batches = static_cast<std::uint32_t>(plan.batches.size());
     report.colours = plan.colours;
     report.overflow = plan.overflow;
+    report.inBuckets = plan.inBuckets;
 }
 
 }  // namespace huestep

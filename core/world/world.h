@@ -51,14 +51,15 @@ std::string_view nameOf(Stage stage);
 /// What the last step did: for people and charts, never state.
 struct StepReport {
     std::uint32_t awakeBodies = 0;
-    std::uint32_t pairs = 0;     ///< pairs of shapes near each other
-    std::uint32_t contacts = 0;  ///< touching
-    std::uint32_t recycled = 0;  ///< contacts whose manifold was kept
-    std::uint32_t joints = 0;    ///< awake
-    std::uint32_t islands = 0;   ///< awake, with at least one constraint
-    std::uint32_t batches = 0;   ///< islands packed for one thread, or one giant island
-    std::uint32_t colours = 0;   ///< most in any batch
-    std::uint32_t overflow = 0;  ///< constraints beyond the last colour
+    std::uint32_t pairs = 0;      ///< pairs of shapes near each other
+    std::uint32_t contacts = 0;   ///< touching
+    std::uint32_t recycled = 0;   ///< contacts whose manifold was kept
+    std::uint32_t joints = 0;     ///< awake
+    std::uint32_t islands = 0;    ///< awake, with at least one constraint
+    std::uint32_t batches = 0;    ///< islands packed for one thread, or one giant island
+    std::uint32_t colours = 0;    ///< most in any batch
+    std::uint32_t overflow = 0;   ///< constraints beyond the last colour
+    std::uint32_t inBuckets = 0;  ///< contacts of hubs, solved in buckets
     std::array<std::uint64_t, static_cast<std::size_t>(Stage::Count)> nanoseconds{};
 };
 

@@ -117,6 +117,8 @@ struct World::Data : Carried {
 
     mutable Gathered gathered;  // of this world's `state.contacts`
 
+    PlanLimits planLimits;  // standard but in tests
+
     // Of one step.
     std::vector<BodyForce> forces;  // by body; empty: none
     bool anyAsleep = false;
