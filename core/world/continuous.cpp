@@ -63,6 +63,12 @@ struct Meeting {
     bool touched = false;
 };
 
+/// Where a body is to stop.
+struct Stop {
+    Meeting first;
+    Pose at;
+};
+
 /// A chain lets through what comes from behind: its middle says where a hull is.
 bool isBehind(const Hull& chain, const Hull& hull, const Pose& relative) {
     Vec2 sum;
@@ -111,7 +117,7 @@ class Stopper {
         std::vector<Wall> walls;
     };
 
-    void stop(const Leap& leap, Scratch& scratch) const {
+    [[nodiscard]] Stop stopOf(const Leap& leap, Scratch& scratch) const {
         Meeting first;
         Pose stopped;
         for (std::uint32_t s = m_known.first[leap.body]; s < m_known.first[leap.body + 1]; ++s) {
@@ -134,8 +140,38 @@ class Stopper {
                 stopped = {transform(end, met.p), compose(end.q, met.q)};
             }
         }
-        if (first.time < 1.0f) put(leap.body, stopped, first);
+        return {first, stopped};
     }
+
+    /// Bodies on joints stop together: where one of them alone did, the joint would be torn open by
+    /// as far as the others go on, and close with a jerk. `stops`: by leap.
+    void stopJointed(std::span<const Leap> leaps, std::span<Stop> stops) const {
+        std::vector<std::uint32_t> leapOf(m_state.bodies.size(), none);
+        for (std::uint32_t i = 0; i < leaps.size(); ++i) leapOf[leaps[i].body] = i;
+        UnionFind sets;
+        sets.reset(static_cast<std::uint32_t>(leaps.size()));
+        bool any = false;
+        for (const ConstraintPlaces& joint : m_known.jointBodies) {
+            const std::uint32_t a = leapOf[joint.a], b = leapOf[joint.b];
+            if (a == none || b == none) continue;
+            sets.unite(a, b);
+            any = true;
+        }
+        if (!any) return;
+        std::vector<float> earliest(leaps.size(), 1.0f);
+        for (std::uint32_t i = 0; i < leaps.size(); ++i) {
+            float& first = earliest[sets.find(i)];
+            first = minOf(first, stops[i].first.time);
+        }
+        for (std::uint32_t i = 0; i < leaps.size(); ++i) {
+            const float time = earliest[sets.find(i)];
+            if (stops[i].first.time > time) {
+                stops[i] = {{time, false}, onTheWay(leaps[i]).at(time)};
+            }
+        }
+    }
+
+    void put(const Leap& leap, const Stop& stop) const { put(leap.body, stop.at, stop.first); }
 
  private:
     [[nodiscard]] Pose poseOf(std::uint32_t body) const { return m_state.motions[body].pose(); }
@@ -176,10 +212,16 @@ class Stopper {
     }
     /// How a shape went from where its body was to where that is.
     [[nodiscard]] SweptHull swept(std::uint32_t shape, std::uint32_t body, const Pose& from) const {
-        const BodyMotion& motion = m_state.motions[body];
-        const Hull& hull = m_known.hulls[shape];
-        return {&hull, from, motion.position - from.p,
-                turnBetween(from.q, motion.rotation, spinOf(body)), coreReachOf(hull)};
+        SweptHull way = onTheWay({body, from});
+        way.hull = &m_known.hulls[shape];
+        way.reach = coreReachOf(*way.hull);
+        return way;
+    }
+    /// The body itself, without a hull.
+    [[nodiscard]] SweptHull onTheWay(const Leap& leap) const {
+        const BodyMotion& motion = m_state.motions[leap.body];
+        const float turn = turnBetween(leap.from.q, motion.rotation, spinOf(leap.body));
+        return {nullptr, leap.from, motion.position - leap.from.p, turn, 0.0f};
     }
     void put(std::uint32_t body, const Pose& stopped, const Meeting& meeting) const {
         BodyMotion& motion = m_state.motions[body];
@@ -209,10 +251,19 @@ class Stopper {
 void World::Data::stopLeaps(const Moved& moved, Executor* executor) {
     if (moved.leaps.empty()) return;
     const Stopper stopper(state, accelerators, moved.driven);
-    overRange(executor, moved.leaps.size(), leapGrain, [&](std::uint32_t begin, std::uint32_t end) {
+    std::vector<Stop> stops(moved.leaps.size());
+    overRange(executor, stops.size(), leapGrain, [&](std::uint32_t begin, std::uint32_t end) {
         Stopper::Scratch scratch;
-        for (std::uint32_t i = begin; i < end; ++i) stopper.stop(moved.leaps[i], scratch);
+        for (std::uint32_t i = begin; i < end; ++i) {
+            stops[i] = stopper.stopOf(moved.leaps[i], scratch);
+        }
     });
+    const auto stopped = [](const Stop& stop) { return stop.first.time < 1.0f; };
+    if (std::none_of(stops.begin(), stops.end(), stopped)) return;
+    if (!accelerators.shapes.jointBodies.empty()) stopper.stopJointed(moved.leaps, stops);
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+        if (stopped(stops[i])) stopper.put(moved.leaps[i], stops[i]);
+    }
 }
 
 }  // namespace huestep

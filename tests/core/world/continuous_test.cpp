@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/math/trig.h"
-#include "tests/core/support.h"
+#include "tests/core/joint/jointed.h"
 
 namespace huestep::test {
 namespace {
@@ -274,6 +274,35 @@ TEST(Continuous, FiltersLetFastBodiesThrough) {
     World world = worldOf(weightless({wall, disc}, {1.0f / 60.0f, 4}));
     run(world, 4);
     EXPECT_NEAR(wide(motionOf(world, 2).position.x), -3.0 + 200.0 * 4.0 / 60.0, 1e-3);
+}
+
+TEST(Continuous, StopsBodiesOnJointsTogetherSoThatTheirJointsStayClosed) {
+    for (const Effort& effort : efforts()) {
+        SCOPED_TRACE(textOf(effort));
+        // Four discs on hinges, one above the other, fall on a wall; joints are closed throughout.
+        std::vector<BodyDef> bodies{
+            bodyAt(BodyType::Static, {0.0f, -1.0f}, ShapeDef::box(5.0f, 1.0f))};
+        std::vector<JointDef> joints;
+        for (int i = 0; i < 4; ++i) {
+            bodies.push_back(discAt({0.0f, 0.9f + 0.5f * static_cast<float>(i)}, 0.2f));
+            bodies.back().velocity = {0.0f, -60.0f};
+            if (i == 0) continue;
+            const auto body = static_cast<std::uint32_t>(i);
+            joints.push_back(hinge(body, {0.0f, 0.25f}, body + 1, {0.0f, -0.25f}));
+        }
+        Scene scene = weightless(std::move(bodies), effort);
+        scene.joints = std::move(joints);
+        World world = worldOf(scene);
+        bool met = false;
+        for (int tick = 0; tick < 3 && !met; ++tick) {
+            run(world, 1);
+            // The step in which the lowest one meets the wall, and only the stage knows of it.
+            met = motionOf(world, 2).position.y < 0.25f;
+            ASSERT_LT(errorOf(world), 0.001) << "tick " << tick;
+        }
+        EXPECT_TRUE(met);
+        EXPECT_GT(motionOf(world, 2).position.y, 0.1f);
+    }
 }
 
 }  // namespace
