@@ -81,7 +81,7 @@ StepLayout World::stepLayout() const {
     });
     layout.islands = std::move(all.views);
     layout.freeBodies = static_cast<std::uint32_t>(plan.freeBodies.size());
-    layout.batchConstraints = standardBatchSize;
+    layout.batchConstraints = m_data->planLimits.batchSize;
     layout.bytesTouched =
         acc.solver.bytes() + bodies * (sizeof(BodyMotion) + sizeof(BodyInfo)) +
         acc.tight.size() * (sizeof(Bounds) + sizeof(Vec2) + sizeof(Hull) + sizeof(Bounds)) +

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/world/world.h"
+#include "tests/core/spoil.h"
 #include "tests/core/support.h"
 
 namespace huestep::test {
@@ -22,6 +23,7 @@ struct Configuration {
     std::uint32_t copyEvery = 0;     ///< ticks; 0: never
     std::uint32_t dropOnceIn = 0;    ///< accelerators are dropped about once in so many ticks
     bool withoutExecutor = false;
+    std::uint32_t batchSize = standardBatchSize;  ///< constraints
 };
 
 inline std::vector<Configuration> allConfigurations() {
@@ -36,12 +38,15 @@ inline std::vector<Configuration> allConfigurations() {
     all.push_back({.name = "copied every 11 ticks", .threads = 2, .copyEvery = 11});
     all.push_back({.name = "accelerators dropped", .dropOnceIn = 7});
     all.push_back({.name = "blocks shuffled", .threads = 3, .shuffleSeed = 12345});
+    all.push_back({.name = "a batch an island, all shared", .threads = 2, .batchSize = 0});
+    all.push_back({.name = "one batch for all", .threads = 2, .batchSize = 1'000'000});
     all.push_back({.name = "all at once",
                    .threads = 3,
                    .simd = Simd::Scalar,
                    .shuffleSeed = 99,
                    .restoreEvery = 41,
-                   .dropOnceIn = 5});
+                   .dropOnceIn = 5,
+                   .batchSize = 50});
     return all;
 }
 
@@ -50,6 +55,7 @@ class ConfiguredRun {
  public:
     ConfiguredRun(Configuration configuration, World world, std::uint64_t seed)
         : m_configuration(std::move(configuration)), m_world(std::move(world)), m_random(seed) {
+        pack();
         if (m_configuration.withoutExecutor) return;
         m_executor =
             std::make_unique<Executor>(m_configuration.threads, m_configuration.shuffleSeed);
@@ -61,6 +67,7 @@ class ConfiguredRun {
         };
         if (due(m_configuration.restoreEvery)) m_world = restored(m_world);
         if (due(m_configuration.copyEvery)) m_world = World(m_world);
+        if (due(m_configuration.restoreEvery) || due(m_configuration.copyEvery)) pack();
         if (m_configuration.dropOnceIn != 0 && m_random.once(m_configuration.dropOnceIn)) {
             m_world.dropAccelerators();
         }
@@ -71,6 +78,11 @@ class ConfiguredRun {
     [[nodiscard]] const World& world() const { return m_world; }
 
  private:
+    void pack() {
+        if (m_configuration.batchSize == standardBatchSize) return;
+        WorldSpoiler::limitPlans(m_world, {.batchSize = m_configuration.batchSize});
+    }
+
     Configuration m_configuration;
     World m_world;
     Random m_random;

@@ -244,5 +244,22 @@ TEST(GoldenRuns, ReachThreadsBarriersAndBatches) {
     EXPECT_GT(reportAfter("joint_grid:n=30").joints, 1100u);
 }
 
+TEST(GoldenRuns, AreSolvedInOtherBatchesWhereAConfigurationSaysSo) {
+    const auto layoutIn = [](std::uint32_t batchSize) {
+        Configuration configuration{.name = "packed otherwise", .batchSize = batchSize};
+        ConfiguredRun run(configuration, worldOf("many_pyramids:rows=5,columns=5,base=8"), 1);
+        run.step({});
+        return std::pair(run.world().report(), run.world().stepLayout());
+    };
+    const auto [alone, eachGiant] = layoutIn(0);
+    EXPECT_EQ(alone.islands, 25u);
+    EXPECT_EQ(alone.batches, alone.islands);
+    EXPECT_EQ(eachGiant.giants, alone.islands);
+    const auto [together, noGiant] = layoutIn(1'000'000);
+    EXPECT_EQ(together.batches, 1u);
+    EXPECT_EQ(noGiant.giants, 0u);
+    EXPECT_EQ(together.islands, alone.islands);
+}
+
 }  // namespace
 }  // namespace huestep::test
