@@ -151,7 +151,7 @@ void addRun(Menu& menu) {
         ->transform(wholeNumber(1, 1'000'000'000));
     sub->add_option("--threads", o->threads, "Threads, 1 to 64 (default: 1)")
         ->transform(wholeNumber(1, maxThreads));
-    sub->add_option("--simd", o->simd, "auto, scalar, sse2, avx2 or avx512 (default: auto)");
+    sub->add_option("--simd", o->simd, "auto, scalar, sse2, avx2, avx512 or neon (default: auto)");
     sub->add_option("--substeps", o->substeps, "Substeps a tick (default: the scene's own)")
         ->transform(wholeNumber(1, 64));
     sub->add_option("--hash-every", o->hashEvery, "Print the hashes after every K ticks")

@@ -110,7 +110,9 @@ HUESTEP_INLINE bool allSet(const Lanes<4>::Mask& mask) {
     typedef float Bits __attribute__((vector_size(16)));
     return __builtin_ia32_movmskps(reinterpret_cast<const Bits&>(mask)) == 15;
 #else
-    return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+    typedef std::int64_t Halves __attribute__((vector_size(16), may_alias));
+    const Halves halves = reinterpret_cast<const Halves&>(mask);
+    return (halves[0] & halves[1]) == -1;
 #endif
 }
 

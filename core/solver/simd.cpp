@@ -28,7 +28,7 @@ std::vector<Simd> availableSimd() {
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
         found.push_back(Simd::Avx512);
     }
-#elif defined(__ARM_NEON)
+#elif defined(__aarch64__)  // the NEON of 32-bit processors has no denormals
     found.push_back(Simd::Neon);
 #endif
     return found;

@@ -76,6 +76,14 @@ TEST(Lanes, SplatKeepsTheSignOfZero) {
     for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(std::signbit(row[i]));
 }
 
+TEST(Lanes, AllAreSetOnlyWhereNoneOfFourIsNot) {
+    for (unsigned set = 0; set < 16; ++set) {
+        std::array<std::int32_t, 4> lanes{};
+        for (unsigned i = 0; i < 4; ++i) lanes[i] = (set >> i & 1u) != 0 ? -1 : 0;
+        EXPECT_EQ(allSet(loadMask<4>(lanes.data())), set == 15) << set;
+    }
+}
+
 TEST(Lanes, LoadAndStoreNeedNoAlignment) {
     alignas(64) std::array<float, 40> memory{};
     for (std::size_t i = 0; i < memory.size(); ++i) memory[i] = static_cast<float>(i);

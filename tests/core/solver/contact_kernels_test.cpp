@@ -500,5 +500,15 @@ TEST(Simd, NamesReadBackAndScalarIsAlwaysThere) {
     EXPECT_FALSE(simdFromName("mmx"));
 }
 
+TEST(Simd, EveryProcessorOfAFamilyHasFourLanes) {
+    const std::vector<Simd> all = availableSimd();
+#if defined(__x86_64__)
+    ASSERT_GE(all.size(), 2u);
+    EXPECT_EQ(all[1], Simd::Sse2);
+#elif defined(__aarch64__)
+    EXPECT_EQ(all, (std::vector{Simd::Scalar, Simd::Neon}));
+#endif
+}
+
 }  // namespace
 }  // namespace huestep::test
