@@ -26,6 +26,16 @@ struct Configuration {
     std::uint32_t batchSize = standardBatchSize;  ///< constraints
 };
 
+inline Configuration everythingAtOnce() {
+    return {.name = "all at once",
+            .threads = 3,
+            .simd = Simd::Scalar,
+            .shuffleSeed = 99,
+            .restoreEvery = 41,
+            .dropOnceIn = 5,
+            .batchSize = 50};
+}
+
 inline std::vector<Configuration> allConfigurations() {
     std::vector<Configuration> all{{.name = "no executor", .withoutExecutor = true}};
     for (const int threads : {1, 2, 3, 8}) {
@@ -40,14 +50,18 @@ inline std::vector<Configuration> allConfigurations() {
     all.push_back({.name = "blocks shuffled", .threads = 3, .shuffleSeed = 12345});
     all.push_back({.name = "a batch an island, all shared", .threads = 2, .batchSize = 0});
     all.push_back({.name = "one batch for all", .threads = 2, .batchSize = 1'000'000});
-    all.push_back({.name = "all at once",
-                   .threads = 3,
-                   .simd = Simd::Scalar,
-                   .shuffleSeed = 99,
-                   .restoreEvery = 41,
-                   .dropOnceIn = 5,
-                   .batchSize = 50});
+    all.push_back(everythingAtOnce());
     return all;
+}
+
+/// The fewest that tell widths, threads and restored copies apart: where a run is slow.
+inline std::vector<Configuration> fewConfigurations() {
+    std::vector<Configuration> few;
+    for (const Simd simd : availableSimd()) {
+        few.push_back({.name = std::string(nameOf(simd)), .simd = simd});
+    }
+    few.push_back(everythingAtOnce());
+    return few;
 }
 
 /// A world and the way it is stepped.
