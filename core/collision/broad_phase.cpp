@@ -16,6 +16,7 @@ constexpr int highestLevel = 21;  // cells of 2,097 km: any box fits, as speeds 
 constexpr std::int64_t cellBias = std::int64_t{1} << 27;
 constexpr std::uint64_t cellMask = (std::uint64_t{1} << 28) - 1;
 constexpr std::uint32_t joinGrain = 256;
+constexpr std::uint32_t mostJoinBlocks = 256;
 constexpr std::uint32_t entryGrain = 512;
 constexpr std::size_t joinAllFrom = 8;        // from an eighth of all shapes on
 constexpr std::uint32_t joinSerially = 1024;  // entries: fewer are joined before a team is awake
@@ -382,9 +383,10 @@ void BroadPhase::joinAll(std::span<const ShapeProxy> proxies, std::span<const Sh
     const auto count = static_cast<std::uint32_t>(m_entries.size());
     // Fewer are joined and sorted before a team is awake.
     if (count < joinSerially) executor = nullptr;
-    m_sorter.begin(m_fat.size(), (count + joinGrain - 1) / joinGrain);
-    overBlocks(executor, count, joinGrain, [&](std::uint32_t begin, std::uint32_t end) {
-        joinBlock(begin, end, proxies, forbidden, m_sorter.block(begin / joinGrain));
+    const std::uint32_t grain = std::max(joinGrain, count / mostJoinBlocks + 1);
+    m_sorter.begin(m_fat.size(), (count + grain - 1) / grain);
+    overBlocks(executor, count, grain, [&](std::uint32_t begin, std::uint32_t end) {
+        joinBlock(begin, end, proxies, forbidden, m_sorter.block(begin / grain));
     });
     m_sorter.sortInto(m_scratch.all, executor);
 }

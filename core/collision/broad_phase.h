@@ -106,7 +106,7 @@ class BroadPhase {
     std::vector<Bounds> m_fat;  // by shape
     // By kind, a bit a kind: with whom it may pair at all, and where a joint may forbid that.
     std::array<std::uint64_t, ShapeProxy::unknownKind> m_mayPair{}, m_mayForbid{};
-    std::vector<Entry> m_entries;  // sorted by key, then shape
+    std::vector<Entry> m_entries;  // sorted by key; which of equals is first means nothing
     std::vector<Level> m_levels;
     std::vector<Entry> m_fixed;  // those of them whose body is not dynamic
     std::vector<Level> m_fixedLevels;

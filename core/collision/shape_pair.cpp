@@ -1,7 +1,6 @@
 #include "core/collision/shape_pair.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/parallel/over_range.h"
 
@@ -9,31 +8,32 @@ namespace huestep {
 
 namespace {
 
-constexpr int rangeBits = 9;
-constexpr std::uint32_t rangeShapes = 1u << rangeBits;
-constexpr std::ptrdiff_t handful = 16;  // pairs of one shape that are sorted by insertion
+constexpr int leastRangeBits = 9;        // of shapes: their counters fill half of a first cache
+constexpr std::size_t mostRanges = 256;  // else blocks times ranges would be quadratic in shapes
+constexpr std::ptrdiff_t handful = 16;   // pairs of one shape that are sorted by insertion
 
 }  // namespace
 
 void PairSorter::begin(std::size_t shapeCount, std::size_t count) {
-    m_shapeCount = shapeCount;
+    m_rangeBits = leastRangeBits;
+    while (shapeCount >> m_rangeBits >= mostRanges) ++m_rangeBits;
+    m_ranges = (shapeCount >> m_rangeBits) + 1;
     m_count = count;
     if (m_blocks.size() < count) m_blocks.resize(count);
     for (std::size_t i = 0; i < count; ++i) m_blocks[i].pairs.clear();
 }
 
 void PairSorter::sortInto(std::vector<ShapePair>& out, Executor* executor) {
-    const std::size_t ranges = (m_shapeCount >> rangeBits) + 1;
     overRange(executor, m_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             Block& block = m_blocks[i];
-            block.next.assign(ranges, 0);
-            for (const ShapePair& p : block.pairs) ++block.next[p.a >> rangeBits];
+            block.next.assign(m_ranges, 0);
+            for (const ShapePair& p : block.pairs) ++block.next[p.a >> m_rangeBits];
         }
     });
-    m_rangeStart.resize(ranges + 1);
+    m_rangeStart.resize(m_ranges + 1);
     std::uint32_t sum = 0;
-    for (std::size_t range = 0; range < ranges; ++range) {
+    for (std::size_t range = 0; range < m_ranges; ++range) {
         m_rangeStart[range] = sum;
         for (std::size_t i = 0; i < m_count; ++i) {
             const std::uint32_t of = m_blocks[i].next[range];
@@ -41,18 +41,18 @@ void PairSorter::sortInto(std::vector<ShapePair>& out, Executor* executor) {
             sum += of;
         }
     }
-    m_rangeStart[ranges] = sum;
+    m_rangeStart[m_ranges] = sum;
     m_scattered.resize(sum);
     overRange(executor, m_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             Block& block = m_blocks[i];
             for (const ShapePair& p : block.pairs) {
-                m_scattered[block.next[p.a >> rangeBits]++] = p;
+                m_scattered[block.next[p.a >> m_rangeBits]++] = p;
             }
         }
     });
     out.resize(sum);
-    overRange(executor, ranges, 1, [&](std::uint32_t begin, std::uint32_t end) {
+    overRange(executor, m_ranges, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t range = begin; range < end; ++range) sortRange(range, out);
     });
 }
@@ -60,17 +60,17 @@ void PairSorter::sortInto(std::vector<ShapePair>& out, Executor* executor) {
 void PairSorter::sortRange(std::uint32_t range, std::vector<ShapePair>& out) const {
     const std::uint32_t first = m_rangeStart[range], last = m_rangeStart[range + 1];
     if (first == last) return;
-    std::array<std::uint32_t, rangeShapes + 1> start{};
-    const auto slot = [](const ShapePair& p) { return p.a & (rangeShapes - 1); };
+    const std::uint32_t shapes = 1u << m_rangeBits;
+    std::vector<std::uint32_t> start(shapes + 1, 0);
+    const auto slot = [&](const ShapePair& p) { return p.a & (shapes - 1); };
     for (std::uint32_t i = first; i < last; ++i) ++start[slot(m_scattered[i]) + 1];
     start[0] = first;
-    for (std::uint32_t s = 0; s < rangeShapes; ++s) start[s + 1] += start[s];
-    std::array<std::uint32_t, rangeShapes> next;
-    std::copy(start.begin(), start.end() - 1, next.begin());
+    for (std::uint32_t s = 0; s < shapes; ++s) start[s + 1] += start[s];
+    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
     for (std::uint32_t i = first; i < last; ++i) {
         out[next[slot(m_scattered[i])]++] = m_scattered[i];
     }
-    for (std::uint32_t s = 0; s < rangeShapes; ++s) {
+    for (std::uint32_t s = 0; s < shapes; ++s) {
         // A handful mostly: by insertion. What is crowded is sorted as anything large is.
         const auto from = out.begin() + start[s], to = out.begin() + start[s + 1];
         if (to - from > handful) {

@@ -40,7 +40,8 @@ class PairSorter {
 
     void sortRange(std::uint32_t range, std::vector<ShapePair>& out) const;
 
-    std::size_t m_shapeCount = 0;
+    int m_rangeBits = 0;  // shapes of a range, as a power of two
+    std::size_t m_ranges = 0;
     std::size_t m_count = 0;  // blocks in use
     std::vector<Block> m_blocks;
     std::vector<std::uint32_t> m_rangeStart;

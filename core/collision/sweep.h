@@ -16,7 +16,7 @@ namespace huestep {
 /// The signed distance of two hulls: where they overlap, minus the least way apart.
 struct Separation {
     float distance = 0.0f;  ///< m
-    Vec2 normal;            ///< unit, from A to B, in the frame of A
+    Vec2 normal;  ///< unit, from A to B, in the frame of A; 0 where two discs' centres meet
 };
 
 /// `relative` is B seen from A. A chain segment counts as one of two sides.
@@ -42,7 +42,8 @@ Pose relativeAt(const SweptHull& a, const SweptHull& b, float t);
 
 /// The time in [0, until) at which the hulls have come to within `tolerance` (m, > 0) of a
 /// separation of `target` (m; negative: an overlap), before which they were never nearer than
-/// `target`; none if they stay farther apart. Requires that they start farther apart. `atStart`:
+/// `target`; none if they stay farther apart. Where many looks have not settled it, the time of the
+/// last: they may meet later or not at all. Requires that they start farther apart. `atStart`:
 /// their separation at time 0.
 std::optional<float> timeOfApproach(const SweptHull& a, const SweptHull& b,
                                     const Separation& atStart, float target, float tolerance,

@@ -146,7 +146,7 @@ void Builder::colourBatch(std::uint32_t batch) {
 }
 
 /// Lanes of one kind of constraint: which constraint is in which, block by block of 16.
-struct Lanes {
+struct LaneList {
     std::vector<std::uint32_t>& sourceOf;
     std::vector<ConstraintBodies>& places;
 
@@ -178,17 +178,19 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
         plan.colourOfLink[link] = colours[i];
         ++counts[colours[i]][kindOf(link, colours[i])];
     }
-    Lanes contacts{plan.contactOfLane, plan.lanePlaces};
-    Lanes revolutes{plan.revoluteOfLane, plan.revolutePlaces};
+    LaneList contacts{plan.contactOfLane, plan.lanePlaces};
+    LaneList revolutes{plan.revoluteOfLane, plan.revolutePlaces};
     Batch& b = plan.batches[batch];
     b.firstColour = static_cast<std::uint32_t>(plan.runs.size());
     b.firstBlock = contacts.blocks();
     b.firstRevoluteBlock = revolutes.blocks();
     b.firstJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
     std::array<std::array<std::uint32_t, 3>, colourCount> next{};
+    std::uint32_t used = 0;
     for (std::size_t c = 0; c < colourCount; ++c) {
         const auto& count = counts[c];
         if (count[Joint] + count[RevoluteLane] + count[ContactLane] == 0) continue;
+        ++used;
         if (isHub(static_cast<std::uint8_t>(c))) {
             layOutHubs(batch, static_cast<std::uint8_t>(c), places, hubs);
             continue;
@@ -214,7 +216,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
     b.endBlock = contacts.blocks();
     b.endRevoluteBlock = revolutes.blocks();
     b.endJoint = static_cast<std::uint32_t>(plan.jointOrder.size());
-    plan.colours = std::max(plan.colours, b.endColour - b.firstColour);
+    plan.colours = std::max(plan.colours, used);
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
         if (isHub(colours[i])) continue;
         const std::uint32_t link = linkOrder[begin + i];
@@ -225,7 +227,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
             plan.jointOrder[at] = source;
             plan.jointPlaces[at] = places[i];
         } else {
-            const Lanes& lanes = kind == RevoluteLane ? revolutes : contacts;
+            const LaneList& lanes = kind == RevoluteLane ? revolutes : contacts;
             lanes.sourceOf[at] = source;
             lanes.places[at] = places[i];
         }
@@ -234,7 +236,6 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
             touched[static_cast<std::size_t>(readPlace(place))] = 1;
         }
     }
-    plan.sharesOfBlock.resize(contacts.blocks(), 0);
     // A copy starts warm as its hub does.
     for (std::uint32_t r = b.firstColour; r < b.endColour; ++r) {
         const ColourRun& run = plan.runs[r];
@@ -246,7 +247,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
 /// The runs of hubs of one of the two colours: every lane's hub is a copy.
 void Builder::layOutHubs(std::uint32_t batch, std::uint8_t colour,
                          std::span<const ConstraintBodies> places, std::span<const HubRun> hubs) {
-    Lanes contacts{plan.contactOfLane, plan.lanePlaces};
+    LaneList contacts{plan.contactOfLane, plan.lanePlaces};
     std::uint32_t hub = 0, firstCopy = 0;
     for (const HubRun& of : hubs) {
         if (of.fixed != (colour == fixedHubColour)) continue;
@@ -271,12 +272,6 @@ void Builder::layOutHubs(std::uint32_t batch, std::uint8_t colour,
         plan.runs.push_back(run);
         plan.inBuckets += run.contactCount;
         contacts.grow(run.contactCount);
-        plan.sharesOfBlock.resize(run.firstBlock, 0);
-        for (std::uint32_t left = run.contactCount; left > 0;) {
-            const std::uint32_t lanes = std::min<std::uint32_t>(left, blockLanes);
-            plan.sharesOfBlock.push_back(static_cast<std::uint8_t>(lanes));
-            left -= lanes;
-        }
         for (std::uint32_t k = 0; k < run.contactCount; ++k) {
             const std::uint32_t i = of.constraints[k];
             const auto copy = static_cast<BodyPlace>(firstCopy + k % blockLanes);
@@ -301,13 +296,13 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.runs.clear();
     plan.contactOfLane.clear();
     plan.lanePlaces.clear();
-    plan.sharesOfBlock.clear();
     plan.jointOrder.clear();
     plan.jointPlaces.clear();
     plan.revoluteOfLane.clear();
     plan.revolutePlaces.clear();
     plan.colourOfLink.assign(plan.links.size(), 0);
     plan.colours = plan.overflow = plan.inBuckets = 0;
+    plan.sharedFrom = limits.sharedFrom;
 
     Builder builder{plan, limits, {}, {}, {}, {}, {}, {}, {}};
     builder.moves.assign(bodyCount, 0);

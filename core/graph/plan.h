@@ -17,8 +17,8 @@ namespace huestep {
 
 inline constexpr std::uint32_t none = 0xffffffffu;
 
-/// Constraints of one colour of one batch: runs of contact blocks, of revolute blocks and of
-/// other joints.
+/// Constraints of one colour of one batch, or of one of a hub's runs: contact blocks, revolute
+/// blocks and other joints.
 struct ColourRun {
     std::uint32_t firstBlock = 0;
     std::uint32_t contactCount = 0;
@@ -62,8 +62,7 @@ struct Plan {
     std::vector<ColourRun> runs;
     std::vector<std::uint32_t> contactOfLane;  ///< block · 16 + lane → contact, or `none`
     std::vector<ConstraintBodies> lanePlaces;  ///< likewise → solver places
-    std::vector<std::uint8_t> sharesOfBlock;  ///< block → lanes that share a hub's mass; 0: no hub
-    std::vector<std::uint32_t> jointOrder;    ///< in solver order → joint
+    std::vector<std::uint32_t> jointOrder;     ///< in solver order → joint
     std::vector<ConstraintBodies> jointPlaces;
     std::vector<std::uint32_t> revoluteOfLane;     ///< block · 16 + lane → joint, or `none`
     std::vector<ConstraintBodies> revolutePlaces;  ///< likewise → solver places
@@ -71,15 +70,22 @@ struct Plan {
     std::vector<std::uint32_t> islandOf;           ///< body → lowest body of its island
     std::vector<std::uint8_t> colourOfLink;
     std::uint32_t islands = 0;
-    std::uint32_t colours = 0;    ///< most in any batch
-    std::uint32_t overflow = 0;   ///< constraints in overflow
-    std::uint32_t inBuckets = 0;  ///< contacts of hubs
+    std::uint32_t colours = 0;     ///< most in any batch; all runs of hubs have two
+    std::uint32_t overflow = 0;    ///< constraints in overflow
+    std::uint32_t sharedFrom = 0;  ///< see `PlanLimits`
+    std::uint32_t inBuckets = 0;   ///< contacts of hubs
 };
 
-/// What may differ from the standard in tests only. No result depends on `batchSize`.
+/// What may differ from the standard in tests only. No result depends on any but `hubDegree`.
 struct PlanLimits {
     std::uint32_t batchSize = standardBatchSize;
     std::uint32_t hubDegree = standardHubDegree;
+    /// Contacts of a giant's colour that are worth a barrier: one costs as much as a pass over some
+    /// hundred of them.
+    std::uint32_t sharedFrom = 192;
+    /// Shapes and joints of a scene that is stepped by more than the caller's thread: waking a
+    /// second one and meeting it at barriers costs more than it saves. Definitions alone decide.
+    std::uint32_t parallelFrom = 512;
 };
 
 /// Makes the plan. `links` and `awake` are moved in; bodies that are not awake are read by the

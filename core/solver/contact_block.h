@@ -67,6 +67,8 @@ struct alignas(64) ContactBlock : ContactFields<LaneRow> {
     std::int32_t kept[blockLanes];  ///< −1: the manifold is that of the last step; 0: it is not
     std::int32_t hit[blockLanes];   ///< −1: the shapes met hard in this step; 0: they did not
     std::int32_t mayHit;            ///< whether any lane approaches fast enough to hit or bounce
+    /// Of a hub's block: by how many lanes the hub's mass was divided last; 0: rows are as made.
+    std::uint32_t shares;
 };
 
 /// Makes the impulses of one block those of another.
@@ -130,6 +132,17 @@ using ContactCheck = void (*)(const BodyMotion* motions, const Bounds* bounds, C
 /// hits. Returns whether there are any.
 using ContactSettle = bool (*)(ContactBlock* blocks, std::uint32_t count);
 
+/// How many of a block's lanes have a row that acts or may: it pushes already, or its gap closes
+/// within the substep. `bodies` holds what the lanes' places say.
+using ContactCount = std::uint32_t (*)(const SolverBody* bodies, const ContactBlock& block,
+                                       const ContactPass& pass);
+
+/// Gives the rows of a hub's block the masses that follow from the bodies at the lanes' places,
+/// copies of the hub with their share of its mass among them. `hubIsA`: a mask by lane;
+/// `inertia`: of such a copy, inverse, 1/(kg·m²).
+using ContactShare = void (*)(const SolverBody* bodies, ContactBlock& block,
+                              const std::int32_t* hubIsA, float inertia);
+
 struct ContactKernels {
     ContactCheck check = nullptr;
     ContactRefresh refresh = nullptr;
@@ -139,6 +152,8 @@ struct ContactKernels {
     ContactKernel relax = nullptr;           ///< normals without bias, then friction and rolling
     ContactKernel restitute = nullptr;
     ContactSettle settle = nullptr;
+    ContactCount countActive = nullptr;
+    ContactShare shareHub = nullptr;
 };
 
 }  // namespace huestep

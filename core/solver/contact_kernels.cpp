@@ -275,6 +275,62 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
     pair.store(bodies, block, lane);
 }
 
+template <int W>
+HUESTEP_INLINE void activeLanes(const SolverBody* bodies, const ContactBlock& block, int lane,
+                                const ContactPass& pass, std::int32_t* active) {
+    const Pair<W> pair(bodies, block, lane);
+    const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
+    const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
+    const LaneF<W> zero = splat<W>(0.0f);
+    const LaneF<W> rolling = loadLanes<W>(block.rollingImpulse + lane);
+    auto any = either(rolling > zero, rolling < zero);
+    for (const ContactPointRows& p : block.points) {
+        const Anchors<W> r = anchorsOf<W>(p, lane);
+        const LaneF<W> s = separationNow<W>(pair, r, a, b, loadLanes<W>(p.separation + lane));
+        LaneF<W> x, y;
+        relativeVelocity<W>(pair, r, x, y);
+        const LaneF<W> closing = (x * pair.nx + y * pair.ny) + s * splat<W>(pass.inverseH);
+        const LaneF<W> tangent = loadLanes<W>(p.tangentImpulse + lane);
+        const auto pushes = either(loadLanes<W>(p.normalImpulse + lane) > zero,
+                                   either(tangent > zero, tangent < zero));
+        const auto meets = either(closing < zero, s < zero);
+        any = either(any, both(loadLanes<W>(p.normalMass + lane) > zero, either(pushes, meets)));
+    }
+    storeMask<W>(active + lane, any);
+}
+
+/// `rowMasses` in lanes. A point that is not there keeps its 0.
+template <int W>
+HUESTEP_INLINE void shareLanes(const SolverBody* bodies, ContactBlock& block, int lane,
+                               const std::int32_t* hubIsA, float inertia) {
+    const auto inverse = [](const LaneF<W>& k) __attribute__((always_inline)) {
+        const LaneF<W> zero = splat<W>(0.0f);
+        return selectLanes(k > zero, splat<W>(1.0f) / k, zero);
+    };
+    const auto isA = loadMask<W>(hubIsA + lane);
+    const LaneF<W> ofHub = splat<W>(inertia);
+    const LaneF<W> iA = selectLanes(isA, ofHub, loadLanes<W>(block.inverseInertiaA + lane));
+    const LaneF<W> iB = selectLanes(isA, loadLanes<W>(block.inverseInertiaB + lane), ofHub);
+    const Pair<W> pair(bodies, block, lane);
+    const LaneF<W> m = pair.a.inverseMass + pair.b.inverseMass;
+    storeLanes<W>(block.inverseInertiaA + lane, iA);
+    storeLanes<W>(block.inverseInertiaB + lane, iB);
+    storeLanes<W>(block.rollingMass + lane, inverse(iA + iB));
+    for (ContactPointRows& p : block.points) {
+        const Anchors<W> r = anchorsOf<W>(p, lane);
+        const LaneF<W> rnA = r.ax * pair.ny - r.ay * pair.nx;
+        const LaneF<W> rnB = r.bx * pair.ny - r.by * pair.nx;
+        const LaneF<W> rtA = r.ax * pair.nx + r.ay * pair.ny;
+        const LaneF<W> rtB = r.bx * pair.nx + r.by * pair.ny;
+        const LaneF<W> zero = splat<W>(0.0f);
+        const auto there = loadLanes<W>(p.normalMass + lane) > zero;
+        const LaneF<W> normal = inverse(m + iA * rnA * rnA + iB * rnB * rnB);
+        const LaneF<W> tangent = inverse(m + iA * rtA * rtA + iB * rtB * rtB);
+        storeLanes<W>(p.normalMass + lane, selectLanes(there, normal, zero));
+        storeLanes<W>(p.tangentMass + lane, selectLanes(there, tangent, zero));
+    }
+}
+
 /// The number where it is finite, 0 where it is not, and +0 for either zero: `finiteOrZero`.
 template <int W>
 HUESTEP_INLINE LaneF<W> settled(LaneRow& field, int lane) {
@@ -337,7 +393,25 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
             blocks[i].mayHit = anySet(blocks[i].hit) ? -1 : 0;                    \
         }                                                                         \
     }
+#define HUESTEP_HUB(W, attributes)                                                               \
+    attributes std::uint32_t countActive##W(const SolverBody* bodies, const ContactBlock& block, \
+                                            const ContactPass& pass) {                           \
+        std::int32_t active[blockLanes];                                                         \
+        for (int lane = 0; lane < blockLanes; lane += W) {                                       \
+            activeLanes<W>(bodies, block, lane, pass, active);                                   \
+        }                                                                                        \
+        std::uint32_t count = 0;                                                                 \
+        for (const std::int32_t lane : active) count += lane != 0 ? 1u : 0u;                     \
+        return count;                                                                            \
+    }                                                                                            \
+    attributes void shareHub##W(const SolverBody* bodies, ContactBlock& block,                   \
+                                const std::int32_t* hubIsA, float inertia) {                     \
+        for (int lane = 0; lane < blockLanes; lane += W) {                                       \
+            shareLanes<W>(bodies, block, lane, hubIsA, inertia);                                 \
+        }                                                                                        \
+    }
 #define HUESTEP_KERNELS(W, attributes)                                     \
+    HUESTEP_HUB(W, attributes)                                             \
     HUESTEP_CHECK(W, attributes)                                           \
     HUESTEP_REFRESH(W, attributes)                                         \
     HUESTEP_PASS(warmStart, ContactBlock, ContactPass, W, attributes)      \
@@ -345,9 +419,9 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
     HUESTEP_PASS(solve, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes)                                      \
-    ContactKernels{check##W, refresh##W, warmStart##W, warmStartAgain##W, \
-                   solve##W, relax##W,   restitute##W, settle##W},
+#define HUESTEP_ENTRY(W, attributes)                                                  \
+    ContactKernels{check##W, refresh##W,   warmStart##W, warmStartAgain##W, solve##W, \
+                   relax##W, restitute##W, settle##W,    countActive##W,    shareHub##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 

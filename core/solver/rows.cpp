@@ -167,6 +167,7 @@ void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world,
             if (block + 1 < blocks.end) prefetchContacts(plan, world, block + 1);
             makeBlock(plan, world, block);
         }
+        m_blocks[block].shares = 0;
         features = features | m_blockFeatures[block];
     }
     if (blocks.begin == blocks.end) return;
@@ -208,40 +209,14 @@ void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32
     }
     rows.anyWarm = anyWarm ? -1 : 0;
     m_blockFeatures[block] = features;
-    for (std::uint32_t lane = 0; lane < plan.sharesOfBlock[block]; ++lane) {
-        shareHub(plan, block * blockLanes + lane, *contacts[lane]);
-    }
 }
 
-/// The masses of a lane whose hub is a copy with its share of the mass.
-void SoftStep::shareHub(const Plan& plan, std::uint32_t lane, const Contact& contact) {
-    ContactBlock& rows = m_blocks[lane / blockLanes];
-    const std::uint32_t at = lane % blockLanes;
-    const auto shares = static_cast<float>(plan.sharesOfBlock[lane / blockLanes]);
-    const BodyPlace placeA = plan.lanePlaces[lane].a;
-    const bool hubIsA = placeA >= 0 && plan.isCopy[static_cast<std::size_t>(placeA)] != 0;
-    const float ofA = hubIsA ? shares : 1.0f, ofB = hubIsA ? 1.0f : shares;
-    const float inertiaA = ofA * contact.row.inverseInertiaA;
-    const float inertiaB = ofB * contact.row.inverseInertiaB;
-    const float mass = ofA * contact.inverseMassA + ofB * contact.inverseMassB;
-    rows.inverseInertiaA[at] = inertiaA;
-    rows.inverseInertiaB[at] = inertiaB;
-    rows.rollingMass[at] = inverseOrZero(inertiaA + inertiaB);
-    for (std::size_t i = 0; i < contact.pointCount; ++i) {
-        const RowMasses masses = rowMasses(contact.anchorA(i), contact.anchorB(i), contact.normal(),
-                                           mass, inertiaA, inertiaB);
-        rows.points[i].normalMass[at] = masses.normal;
-        rows.points[i].tangentMass[at] = masses.tangent;
-    }
-}
-
-void SoftStep::writeRow(const Plan& plan, std::uint32_t lane, const Contact& contact) {
+void SoftStep::writeRow(std::uint32_t lane, const Contact& contact) {
     ContactBlock& rows = m_blocks[lane / blockLanes];
     writeLane<ContactFields>(contact.row, rows, lane % blockLanes);
     for (std::size_t i = 0; i < 2; ++i) {
         writeLane<ContactPointFields>(contact.points[i], rows.points[i], lane % blockLanes);
     }
-    if (plan.sharesOfBlock[lane / blockLanes] > 0) shareHub(plan, lane, contact);
 }
 
 void SoftStep::check(std::span<const BodyMotion> motions, std::span<const Bounds> bounds, Simd simd,

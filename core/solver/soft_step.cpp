@@ -24,8 +24,6 @@ constexpr float pushSpeed = 3.0f;  // m/s
 constexpr std::uint32_t bodyGrain = 256;
 constexpr std::uint32_t blockGrain = 16;
 constexpr std::uint32_t jointGrain = 128;
-// A barrier costs as much as a pass over some hundred contacts.
-constexpr std::uint32_t sharedFrom = 192;
 constexpr std::uint32_t jointsAsLanes = 8;  // a joint one by one takes as long as so many in lanes
 
 /// Worker's share of [0, count): contiguous, sizes differing by at most one.
@@ -41,9 +39,9 @@ struct Share {
 
 }  // namespace
 
-bool isShared(const ColourRun& run) {
+bool isShared(const Plan& plan, const ColourRun& run) {
     return !isSerial(run.colour) && !isHub(run.colour) &&
-           run.contactCount + run.revoluteCount + jointsAsLanes * run.jointCount >= sharedFrom;
+           run.contactCount + run.revoluteCount + jointsAsLanes * run.jointCount >= plan.sharedFrom;
 }
 
 /// Constants of all passes over one batch.
@@ -95,22 +93,35 @@ const SoftStep::Sweep SoftStep::relaxSweep{solveJoint, &RevoluteKernels::solve,
                                            &ContactKernels::relax};
 const SoftStep::Sweep SoftStep::restituteSweep{nullptr, nullptr, &ContactKernels::restitute};
 
-/// A hub's contacts, bucket by bucket: each lane works on a copy of the hub with its share of the
-/// mass, and the mean of the copies is what becomes of the hub. The sum has a fixed shape of eight
-/// lanes, whatever the kernel's width.
-void SoftStep::sweepHub(const ColourRun& run, ContactKernel kernel, const ContactPass& pass) {
+/// A hub's contacts, bucket by bucket: each lane works on a copy of the hub, and the mean of the
+/// copies is what becomes of the hub. Lanes that act share its mass; those that do not would make
+/// it the heavier. The sum has a fixed shape of eight lanes, whatever the kernel's width.
+void SoftStep::sweepHub(const ColourRun& run, ContactKernel kernel, const ContactKernels& kernels,
+                        const ContactPass& pass) {
     constexpr std::uint32_t sumLanes = 8;
     SolverBody& hub = m_bodies[run.hub];
     SolverBody* copies = m_bodies.data() + run.firstCopy;
     for (std::uint32_t first = 0; first < run.contactCount; first += blockLanes) {
         const std::uint32_t lanes =
             std::min(run.contactCount - first, static_cast<std::uint32_t>(blockLanes));
-        const auto shares = static_cast<float>(lanes);
+        ContactBlock& block = m_blocks[run.firstBlock + first / blockLanes];
+        std::fill_n(copies, lanes, hub);
+        const std::uint32_t acting = kernels.countActive(m_bodies.data(), block, pass);
+        if (acting == 0) continue;
+        const auto shares = static_cast<float>(acting);
+        for (std::uint32_t i = 0; i < lanes; ++i) copies[i].inverseMass = shares * hub.inverseMass;
+        if (block.shares != acting) {
+            block.shares = acting;
+            std::array<std::int32_t, blockLanes> hubIsA{};
+            const auto firstCopy = static_cast<BodyPlace>(run.firstCopy);
+            for (std::uint32_t i = 0; i < lanes; ++i) {
+                hubIsA[i] = block.bodyA[i] == firstCopy + static_cast<BodyPlace>(i) ? -1 : 0;
+            }
+            kernels.shareHub(m_bodies.data(), block, hubIsA.data(),
+                             shares * m_sources[run.hub].inverseInertia);
+        }
         const LaneF<4> before = loadLanes<4>(&hub.vx);
-        SolverBody share = hub;
-        share.inverseMass = shares * hub.inverseMass;
-        std::fill_n(copies, lanes, share);
-        kernel(m_bodies.data(), m_blocks.data() + run.firstBlock + first / blockLanes, lanes, pass);
+        kernel(m_bodies.data(), &block, lanes, pass);
         std::array<LaneF<4>, sumLanes> sum{};
         for (std::uint32_t i = 0; i < lanes; ++i) {
             sum[i % sumLanes] += loadLanes<4>(&copies[i].vx) - before;
@@ -129,7 +140,7 @@ void SoftStep::sweepColour(const ColourRun& run, const Sweep& sweep, const Joint
                            const Pass& pass, int worker, int workers) {
     const ContactPass& contactPass = run.colour >= firstFixedColour ? pass.fixed : pass.moving;
     if (isHub(run.colour)) {
-        sweepHub(run, pass.contacts->*sweep.contact, contactPass);
+        sweepHub(run, pass.contacts->*sweep.contact, *pass.contacts, contactPass);
         return;
     }
     // Constraints of the overflow share bodies: one by one, in key order.
@@ -176,13 +187,13 @@ void SoftStep::substeps(const Plan& plan, const Batch& batch, const Pass& pass, 
         for (std::uint32_t c = batch.firstColour; c < batch.endColour; ++c) {
             // Colours too small to share go through one worker, one after another, without a
             // barrier between: a hub has dozens of them.
-            const bool shared = workers > 1 && isShared(plan.runs[c]);
+            const bool shared = workers > 1 && isShared(plan, plan.runs[c]);
             if (shared) {
                 sweepColour(plan.runs[c], sweep, joint, pass, worker, workers);
             } else if (worker == 0) {
                 sweepColour(plan.runs[c], sweep, joint, pass, 0, 1);
             }
-            if (c + 1 == batch.endColour || shared || isShared(plan.runs[c + 1])) barrier();
+            if (c + 1 == batch.endColour || shared || isShared(plan, plan.runs[c + 1])) barrier();
         }
     };
     const bool hasJoints =

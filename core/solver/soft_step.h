@@ -52,7 +52,7 @@ struct Moved {
 };
 
 /// Whether a colour of a giant island is worth a barrier: by its size alone, whoever runs it.
-bool isShared(const ColourRun& run);
+bool isShared(const Plan& plan, const ColourRun& run);
 
 /// What the solver reads and writes of the world.
 struct SolverWorld {
@@ -110,7 +110,7 @@ class SoftStep {
                 rows.rollingImpulse[at]};
     }
     /// Writes a contact's row to its lane, whose bodies stay.
-    void writeRow(const Plan& plan, std::uint32_t lane, const Contact& contact);
+    void writeRow(std::uint32_t lane, const Contact& contact);
 
     /// Takes over what another holds for its next step. Blocks for which `same(block)` differ in
     /// their impulses alone. Allocates only where there are more blocks than ever before.
@@ -167,7 +167,6 @@ class SoftStep {
                        Range blocks, ContactFeatures& features);
     static void prefetchContacts(const Plan& plan, const SolverWorld& world, std::uint32_t block);
     void makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block);
-    void shareHub(const Plan& plan, std::uint32_t lane, const Contact& contact);
     void settleBlocks(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
                       Range blocks, std::vector<ContactHit>& hits);
     void storeJoints(const SolverWorld& world, Range joints) const;
@@ -180,7 +179,8 @@ class SoftStep {
     static Pass makePass(const SolverWorld& world, Simd simd);
     void solveGiant(const Plan& plan, const SolverWorld& world, const Batch& batch, Pass pass,
                     Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer);
-    void sweepHub(const ColourRun& run, ContactKernel kernel, const ContactPass& pass);
+    void sweepHub(const ColourRun& run, ContactKernel kernel, const ContactKernels& kernels,
+                  const ContactPass& pass);
     void sweepColour(const ColourRun& run, const Sweep& sweep, const JointPass& joint,
                      const Pass& pass, int worker, int workers);
     void substeps(const Plan& plan, const Batch& batch, const Pass& pass, int worker, int workers,

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "core/collision/sweep.h"
 #include "core/parallel/over_range.h"
@@ -52,9 +53,12 @@ Bounds boundsOnTheWay(const Hull& hull, const Pose& from, const Pose& to, float 
                  reach * (0.25f * lengthSquared(chord)));
 }
 
-/// The greatest way of a point of a body.
-float wayOf(const Pose& from, const Pose& to, float reach) {
-    return length(to.p - from.p) + reach * length(Vec2{to.q.c - from.q.c, to.q.s - from.q.s});
+/// How far from where it was a point of a body may have been.
+float wayOf(const Pose& from, const Pose& to, float spin, float reach) {
+    // Beyond half a turn the chord says nothing.
+    const bool little = absoluteOf(spin) < 1.5f;
+    const Vec2 chord{to.q.c - from.q.c, to.q.s - from.q.s};
+    return length(to.p - from.p) + reach * (little ? length(chord) : 2.0f);
 }
 
 /// When a hull on its way is to stop before a wall, and whether it touched that to begin with.
@@ -63,10 +67,11 @@ struct Meeting {
     bool touched = false;
 };
 
-/// Where a body is to stop.
+/// Where a body is to stop. `drive`: how the wall went, where that is one that goes on.
 struct Stop {
     Meeting first;
     Pose at;
+    const Leap* drive = nullptr;
 };
 
 /// A chain lets through what comes from behind: its middle says where a hull is.
@@ -81,9 +86,8 @@ bool isBehind(const Hull& chain, const Hull& hull, const Pose& relative) {
 /// A wall that a shape may meet on its way, and how they start.
 struct Wall {
     SweptHull swept;
-    std::uint32_t body = 0;
     Separation before;
-    bool drives = false;
+    const Leap* drive = nullptr;  ///< where it goes on
 };
 
 /// None before `until`. `sunk`: how deep the shape is in any wall already, m, ≤ 0.
@@ -107,7 +111,7 @@ class Stopper {
         : m_state(state), m_acc(acc), m_known(acc.shapes), m_driven(driven) {
         // Broad phase and bounds are those of the step's start: driven bodies have gone on since.
         for (const Leap& d : driven) {
-            const float way = wayOf(d.from, poseOf(d.body), m_known.reach[d.body]);
+            const float way = wayOf(d.from, poseOf(d.body), spinOf(d.body), m_known.reach[d.body]);
             m_farthestDriven = maxOf(m_farthestDriven, way);
         }
     }
@@ -118,8 +122,7 @@ class Stopper {
     };
 
     [[nodiscard]] Stop stopOf(const Leap& leap, Scratch& scratch) const {
-        Meeting first;
-        Pose stopped;
+        Stop stop;
         for (std::uint32_t s = m_known.first[leap.body]; s < m_known.first[leap.body + 1]; ++s) {
             if (m_known.proxies[s].alone || !(m_known.thickness[s] > 0.0f)) continue;
             findWalls(s, leap, scratch);
@@ -129,18 +132,12 @@ class Stopper {
             float sunk = 0.0f;
             for (const Wall& wall : scratch.walls) sunk = minOf(sunk, wall.before.distance);
             for (const Wall& wall : scratch.walls) {
-                const auto meeting = meetingOf(wall, body, m_known.thickness[s], sunk, first.time);
-                if (!meeting) continue;
-                first = *meeting;
-                stopped = body.at(first.time);
-                if (!wall.drives) continue;
-                // Where it met a wall that goes on, it goes on with the wall.
-                const Pose met = relativeAt(wall.swept, body, first.time);
-                const Pose end = poseOf(wall.body);
-                stopped = {transform(end, met.p), compose(end.q, met.q)};
+                const auto meeting =
+                    meetingOf(wall, body, m_known.thickness[s], sunk, stop.first.time);
+                if (meeting) stop = stopAt(*meeting, body, wall.drive);
             }
         }
-        return {first, stopped};
+        return stop;
     }
 
     /// Bodies on joints stop together: where one of them alone did, the joint would be torn open by
@@ -158,20 +155,44 @@ class Stopper {
             any = true;
         }
         if (!any) return;
-        std::vector<float> earliest(leaps.size(), 1.0f);
+        // The earliest of each set; of equals that of the lowest body.
+        std::vector<std::uint32_t> earliest(leaps.size(), none);
+        const auto key = [&](std::uint32_t i) {
+            return std::pair(stops[i].first.time, leaps[i].body);
+        };
         for (std::uint32_t i = 0; i < leaps.size(); ++i) {
-            float& first = earliest[sets.find(i)];
-            first = minOf(first, stops[i].first.time);
+            std::uint32_t& first = earliest[sets.find(i)];
+            if (first == none || key(i) < key(first)) first = i;
         }
+        const std::vector<Stop> own(stops.begin(), stops.end());
         for (std::uint32_t i = 0; i < leaps.size(); ++i) {
-            const float time = earliest[sets.find(i)];
-            if (stops[i].first.time > time) {
-                stops[i] = {{time, false}, onTheWay(leaps[i]).at(time)};
-            }
+            const Stop& first = own[earliest[sets.find(i)]];
+            // Who met a wall that goes on stays before it.
+            if (own[i].drive != nullptr || !(own[i].first.time > first.first.time)) continue;
+            stops[i] = stopAt({first.first.time, false}, onTheWay(leaps[i]), first.drive);
         }
     }
 
-    void put(const Leap& leap, const Stop& stop) const { put(leap.body, stop.at, stop.first); }
+    void put(std::uint32_t body, const Stop& stop) const {
+        BodyMotion& motion = m_state.motions[body];
+        motion.position = canonicalZero(stop.at.p);
+        motion.rotation = canonicalZero(normalized(stop.at.q));
+        // It did not fall for the rest of the step, so it did not gain that speed; whom something
+        // held up did not gain it in the first place.
+        const float rest = (1.0f - stop.first.time) * m_state.info().stepSeconds;
+        const Vec2 fall = (rest * m_state.bodies[body].gravityScale) * m_state.info().gravity;
+        const float along = dot(motion.velocity, fall);
+        if (along > 0.0f) {
+            const float part = minOf(along / lengthSquared(fall), 1.0f);
+            motion.velocity = canonicalZero(motion.velocity - part * fall);
+        }
+        // What went in though it touched has turned in: rows take the velocity of a point for a
+        // straight one. It would spin on the spot, ever deeper.
+        if (stop.first.touched) {
+            motion.angularVelocity =
+                canonicalZero((0.5f + 0.5f * stop.first.time) * motion.angularVelocity);
+        }
+    }
 
  private:
     [[nodiscard]] Pose poseOf(std::uint32_t body) const { return m_state.motions[body].pose(); }
@@ -185,24 +206,23 @@ class Stopper {
     }
     /// In the order of their shapes.
     void findWalls(std::uint32_t shape, const Leap& leap, Scratch& scratch) const {
-        const Bounds way = grown(
-            boundsOnTheWay(m_known.hulls[shape], leap.from, poseOf(leap.body), spinOf(leap.body)),
-            m_farthestDriven);
+        const Bounds way =
+            boundsOnTheWay(m_known.hulls[shape], leap.from, poseOf(leap.body), spinOf(leap.body));
+        const Bounds wayOfDriven = grown(way, m_farthestDriven);
         scratch.near.clear();
         scratch.walls.clear();
-        m_acc.broadPhase.findFixed(shape, way, m_known.proxies, m_known.forbidden, scratch.near);
+        m_acc.broadPhase.findFixed(shape, wayOfDriven, m_known.proxies, m_known.forbidden,
+                                   scratch.near);
         if (scratch.near.empty()) return;
         const SweptHull body = swept(shape, leap.body, leap.from);
         std::sort(scratch.near.begin(), scratch.near.end());
         for (const std::uint32_t other : scratch.near) {
-            // Tight bounds decide: fat ones depend on what was before.
-            if (!overlaps(way, m_acc.tight[other])) continue;
             const std::uint32_t place = m_known.proxies[other].body;
             const Leap* drive = driveOf(place);
-            Wall wall{swept(other, place, drive != nullptr ? drive->from : poseOf(place)),
-                      place,
-                      {},
-                      drive != nullptr};
+            // Tight bounds decide: fat ones depend on what was before.
+            if (!overlaps(drive != nullptr ? wayOfDriven : way, m_acc.tight[other])) continue;
+            Wall wall{
+                swept(other, place, drive != nullptr ? drive->from : poseOf(place)), {}, drive};
             const Pose first = relativeAt(wall.swept, body, 0.0f);
             const Hull& hull = *wall.swept.hull;
             if (hull.oneSided && isBehind(hull, *body.hull, first)) continue;
@@ -223,20 +243,14 @@ class Stopper {
         const float turn = turnBetween(leap.from.q, motion.rotation, spinOf(leap.body));
         return {nullptr, leap.from, motion.position - leap.from.p, turn, 0.0f};
     }
-    void put(std::uint32_t body, const Pose& stopped, const Meeting& meeting) const {
-        BodyMotion& motion = m_state.motions[body];
-        motion.position = canonicalZero(stopped.p);
-        motion.rotation = canonicalZero(normalized(stopped.q));
-        // It did not fall for the rest of the step, so it did not gain that speed.
-        const float rest = (1.0f - meeting.time) * m_state.info().stepSeconds;
-        const float scale = rest * m_state.bodies[body].gravityScale;
-        motion.velocity = canonicalZero(motion.velocity - scale * m_state.info().gravity);
-        // What went in though it touched has turned in: rows take the velocity of a point for a
-        // straight one. It would spin on the spot, ever deeper.
-        if (meeting.touched) {
-            motion.angularVelocity =
-                canonicalZero((0.5f + 0.5f * meeting.time) * motion.angularVelocity);
-        }
+    /// Where a body stops at a time on its way; where a wall met it that goes on, it goes on with
+    /// the wall.
+    [[nodiscard]] Stop stopAt(const Meeting& meeting, const SweptHull& body,
+                              const Leap* drive) const {
+        if (drive == nullptr) return {meeting, body.at(meeting.time), nullptr};
+        const Pose met = relativeAt(onTheWay(*drive), body, meeting.time);
+        const Pose end = poseOf(drive->body);
+        return {meeting, {transform(end, met.p), compose(end.q, met.q)}, drive};
     }
 
     WorldState& m_state;
@@ -262,7 +276,7 @@ void World::Data::stopLeaps(const Moved& moved, Executor* executor) {
     if (std::none_of(stops.begin(), stops.end(), stopped)) return;
     if (!accelerators.shapes.jointBodies.empty()) stopper.stopJointed(moved.leaps, stops);
     for (std::size_t i = 0; i < stops.size(); ++i) {
-        if (stopped(stops[i])) stopper.put(moved.leaps[i], stops[i]);
+        if (stopped(stops[i])) stopper.put(moved.leaps[i].body, stops[i]);
     }
 }
 

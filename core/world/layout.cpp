@@ -69,7 +69,7 @@ StepLayout World::stepLayout() const {
         ++layout.giants;
         layout.colours += batch.endColour - batch.firstColour;
         for (std::uint32_t c = batch.firstColour; c < batch.endColour; ++c) {
-            layout.sharedColours += isShared(plan.runs[c]);
+            layout.sharedColours += isShared(plan, plan.runs[c]);
         }
     }
     for (std::size_t i = 0; i < all.views.size(); ++i) {

@@ -10,9 +10,6 @@ namespace huestep {
 
 namespace {
 
-// A scene of fewer shapes and joints is stepped by the caller alone: waking a second thread and
-// meeting it at barriers costs more than it saves. Definitions alone decide.
-constexpr std::size_t parallelFrom = 512;
 constexpr std::uint32_t bodyGrain = 256;
 constexpr float travelTicks = 2.0f;  // how far ahead fat bounds look
 
@@ -29,7 +26,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     timer.done(Stage::Commands);
 
     if (accelerators.definitionsStale) rebuildShapes();
-    const bool small = state.shapes.size() + state.joints.size() < parallelFrom;
+    const bool small = state.shapes.size() + state.joints.size() < planLimits.parallelFrom;
     Executor* executor = small ? nullptr : with.executor;
     findPairs(executor);  // motions → bounds, candidate pairs by key
     timer.done(Stage::Pairs);
@@ -181,7 +178,7 @@ void World::Data::updatePlan(Executor* executor) {
     } else {
         for (const std::uint32_t lane : acc.freshLanes) {
             acc.rowStamps[lane / blockLanes] = stamp;
-            acc.solver.writeRow(plan, lane, acc.contacts[plan.contactOfLane[lane]]);
+            acc.solver.writeRow(lane, acc.contacts[plan.contactOfLane[lane]]);
         }
     }
     report.contacts = static_cast<std::uint32_t>(acc.contacts.size() - acc.freeContacts.size());

@@ -72,7 +72,9 @@ struct ContactView {
     std::array<Vec2, 2> point;             ///< m, world, midway between the surfaces
     std::array<float, 2> separation{};     ///< m, < 0: overlap
     std::array<float, 2> normalImpulse{};  ///< N·s of the last substep
-    int colour = -1;  ///< graph colour in the last step; −1: asleep; 255: overflow
+    /// Graph colour in the last step (core/graph/coloring.h), those of hubs' buckets too; −1:
+    /// asleep; 255: overflow.
+    int colour = -1;
 };
 
 /// An island as the last step solved it.

@@ -167,7 +167,7 @@ struct World::Data : Carried {
     void updatePlan(Executor* executor);
 
     // continuous.cpp
-    /// Puts fast bodies that met a static or kinematic one on their way back to where they did.
+    /// Puts fast bodies back to where on their way they met a static or kinematic one.
     void stopLeaps(const Moved& moved, Executor* executor);
 
     // contacts.cpp
@@ -177,6 +177,8 @@ struct World::Data : Carried {
     [[nodiscard]] ContactChange changeOf(const Contact& contact) const;
     void collideAll(Simd simd, Executor* executor);
     void fetchImpulses(Executor* executor);
+
+    // sleep.cpp
     bool wakeTouched(bool contactDisturbs);
     void settleIslands();
 

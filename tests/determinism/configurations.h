@@ -23,7 +23,7 @@ struct Configuration {
     std::uint32_t copyEvery = 0;     ///< ticks; 0: never
     std::uint32_t dropOnceIn = 0;    ///< accelerators are dropped about once in so many ticks
     bool withoutExecutor = false;
-    std::uint32_t batchSize = standardBatchSize;  ///< constraints
+    PlanLimits limits{};
 };
 
 inline Configuration everythingAtOnce() {
@@ -33,23 +33,35 @@ inline Configuration everythingAtOnce() {
             .shuffleSeed = 99,
             .restoreEvery = 41,
             .dropOnceIn = 5,
-            .batchSize = 50};
+            .limits = {.batchSize = 50, .sharedFrom = 40, .parallelFrom = 0}};
 }
 
 inline std::vector<Configuration> allConfigurations() {
     std::vector<Configuration> all{{.name = "no executor", .withoutExecutor = true}};
     for (const int threads : {1, 2, 3, 8}) {
-        all.push_back({.name = std::to_string(threads) + " threads", .threads = threads});
+        all.push_back({.name = std::to_string(threads) + " threads",
+                       .threads = threads,
+                       .limits = {.sharedFrom = threads > 3 ? 192u : 1u, .parallelFrom = 0}});
     }
     for (const Simd simd : availableSimd()) {
         all.push_back({.name = std::string(nameOf(simd)), .simd = simd});
     }
     all.push_back({.name = "restored every 37 ticks", .restoreEvery = 37});
-    all.push_back({.name = "copied every 11 ticks", .threads = 2, .copyEvery = 11});
+    all.push_back({.name = "copied every 11 ticks",
+                   .threads = 2,
+                   .copyEvery = 11,
+                   .limits = {.parallelFrom = 0}});
     all.push_back({.name = "accelerators dropped", .dropOnceIn = 7});
-    all.push_back({.name = "blocks shuffled", .threads = 3, .shuffleSeed = 12345});
-    all.push_back({.name = "a batch an island, all shared", .threads = 2, .batchSize = 0});
-    all.push_back({.name = "one batch for all", .threads = 2, .batchSize = 1'000'000});
+    all.push_back({.name = "blocks shuffled",
+                   .threads = 3,
+                   .shuffleSeed = 12345,
+                   .limits = {.sharedFrom = 1, .parallelFrom = 0}});
+    all.push_back({.name = "a batch an island, all shared",
+                   .threads = 2,
+                   .limits = {.batchSize = 0, .sharedFrom = 1, .parallelFrom = 0}});
+    all.push_back({.name = "one batch for all",
+                   .threads = 2,
+                   .limits = {.batchSize = 1'000'000, .parallelFrom = 0}});
     all.push_back(everythingAtOnce());
     return all;
 }
@@ -92,10 +104,7 @@ class ConfiguredRun {
     [[nodiscard]] const World& world() const { return m_world; }
 
  private:
-    void pack() {
-        if (m_configuration.batchSize == standardBatchSize) return;
-        WorldSpoiler::limitPlans(m_world, {.batchSize = m_configuration.batchSize});
-    }
+    void pack() { WorldSpoiler::limitPlans(m_world, m_configuration.limits); }
 
     Configuration m_configuration;
     World m_world;

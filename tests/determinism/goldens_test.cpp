@@ -48,7 +48,7 @@ std::vector<GoldenRun> goldenRuns() {
          "many equal islands packed into batches",
          {1, 40, 120},
          40},
-        {"joint_grid:n=20", "joints alone, under the size that uses threads", {1, 60, 240}, 240},
+        {"joint_grid:n=20", "joints alone", {1, 60, 240}, 240},
         {"joint_grid:n=30", "joints alone, one giant island", {1, 40, 120}, 40},
         {"tumbler:count=24", "contacts that come and go, a motor", {1, 60, 120, 200}, 60},
         {"spinner:bodies=1000",
@@ -268,7 +268,7 @@ TEST(GoldenRuns, ReachThreadsBarriersAndBatches) {
 
 TEST(GoldenRuns, AreSolvedInOtherBatchesWhereAConfigurationSaysSo) {
     const auto layoutIn = [](std::uint32_t batchSize) {
-        Configuration configuration{.name = "packed otherwise", .batchSize = batchSize};
+        Configuration configuration{.name = "packed otherwise", .limits = {.batchSize = batchSize}};
         ConfiguredRun run(configuration, worldOf("many_pyramids:rows=5,columns=5,base=8"), 1);
         run.step({});
         return std::pair(run.world().report(), run.world().stepLayout());

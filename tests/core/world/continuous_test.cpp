@@ -305,5 +305,47 @@ TEST(Continuous, StopsBodiesOnJointsTogetherSoThatTheirJointsStayClosed) {
     }
 }
 
+TEST(Continuous, GivesNoSpeedBackThatABodyOnAFloorNeverGained) {
+    Scene scene =
+        sceneOf({ground(), bodyAt(BodyType::Static, {3.0f, 0.0f}, ShapeDef::box(0.1f, 2.0f)),
+                 discAt({0.0f, 0.1f}, 0.1f)});
+    for (BodyDef& body : scene.bodies) body.shapes[0].material.friction = 0.0f;
+    scene.bodies[2].velocity = {30.0f, 0.0f};
+    World world = worldOf(scene);
+    double most = 0.0;
+    for (int tick = 0; tick < 12; ++tick) {
+        run(world, 1);
+        most = std::max(most, wide(motionOf(world, 3).velocity.y));
+    }
+    EXPECT_LT(wide(motionOf(world, 3).position.x), 2.9) << "the wall is there";
+    EXPECT_LT(most, 0.02);
+}
+
+TEST(Continuous, LeavesNobodyBehindAWallThatGoesOnWhoseNeighbourStoppedEarlier) {
+    // Two on a hinge fall fast; the floor stops the one, a thin wall from the side meets the other.
+    std::vector<BodyDef> bodies{
+        bodyAt(BodyType::Static, {0.0f, -1.0f}, ShapeDef::box(1.0f, 1.0f)),
+        bodyAt(BodyType::Kinematic, {2.0f, 0.0f}, ShapeDef::box(0.01f, 3.0f)),
+        discAt({0.0f, 0.35f}, 0.2f), discAt({1.5f, 0.35f}, 0.2f)};
+    bodies[1].velocity = {-50.0f, 0.0f};
+    bodies[2].velocity = bodies[3].velocity = {0.0f, -60.0f};
+    Scene scene = weightless(std::move(bodies), {1.0f / 60.0f, 4});
+    scene.joints = {hinge(2, {0.75f, 0.0f}, 3, {-0.75f, 0.0f})};
+    World world = worldOf(scene);
+    run(world, 1);
+    EXPECT_LT(motionOf(world, 4).position.x, motionOf(world, 2).position.x);
+}
+
+TEST(Continuous, FindsAWallThatTurnsRoundOnceAStep) {
+    std::vector<BodyDef> bodies{bodyAt(BodyType::Kinematic, {}, ShapeDef::box(2.0f, 0.05f)),
+                                discAt({-6.0f, 1.0f}, 0.05f)};
+    bodies[0].angularVelocity = static_cast<float>(2.0 * pi * 60.0);
+    bodies[1].velocity = {720.0f, 0.0f};
+    World world = worldOf(weightless(std::move(bodies), {1.0f / 60.0f, 4}));
+    run(world, 1);
+    // Whatever it meets, it does not fly by as if nothing were there.
+    EXPECT_LT(wide(motionOf(world, 2).position.x), 5.0);
+}
+
 }  // namespace
 }  // namespace huestep::test
