@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 
 #include "core/math/lanes.h"
 #include "core/parallel/over_range.h"
@@ -104,11 +105,48 @@ void BroadPhase::clear() {
     m_isMoved.clear();
 }
 
+std::uint32_t BroadPhase::tagOf(std::uint32_t shape, const ShapeProxy& proxy) {
+    const std::uint32_t fixed = proxy.dynamic ? 0u : 1u;
+    return shape | static_cast<std::uint32_t>(proxy.kind) << 24 | fixed << 31;
+}
+
 BroadPhase::Entry BroadPhase::entryOf(std::uint32_t shape, const ShapeProxy& proxy) const {
     const Bounds& box = m_fat[shape];
-    const std::uint32_t fixed = proxy.dynamic ? 0u : 1u;
-    const std::uint32_t tag = shape | static_cast<std::uint32_t>(proxy.kind) << 24 | fixed << 31;
-    return {box.low.x, box.low.y, -box.high.x, -box.high.y, keyOf(box), tag, proxy.body};
+    return {box.low.x,  box.low.y,           -box.high.x, -box.high.y,
+            keyOf(box), tagOf(shape, proxy), proxy.body};
+}
+
+void BroadPhase::renumber(std::span<const std::uint32_t> placeOf,
+                          std::span<const ShapeProxy> proxies) {
+    learnKinds(proxies);
+    const auto placeNow = [&](std::uint32_t shape) {
+        return placeOf.empty() ? shape : placeOf[shape];
+    };
+    auto to = m_entries.begin();
+    for (Entry entry : m_entries) {
+        const std::uint32_t shape = placeNow(entry.shape());
+        if (shape == noPlace) continue;
+        entry.tag = tagOf(shape, proxies[shape]);
+        entry.body = proxies[shape].body;
+        *to++ = entry;
+    }
+    m_entries.erase(to, m_entries.end());
+    findLevels();
+    if (placeOf.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < m_fat.size(); ++i) {
+        if (placeOf[i] == noPlace) continue;
+        m_fat[placeOf[i]] = m_fat[i];
+        kept = placeOf[i] + 1;
+    }
+    m_fat.resize(kept);
+    m_isMoved.resize(kept);
+    renumberPairs(m_pairs, placeOf);
+}
+
+void BroadPhase::letGo(std::uint32_t shape) {
+    constexpr float far = std::numeric_limits<float>::max();
+    if (shape < m_fat.size()) m_fat[shape] = {{far, far}, {-far, -far}};
 }
 
 void BroadPhase::learnKinds(std::span<const ShapeProxy> proxies) {
@@ -421,7 +459,7 @@ void BroadPhase::joinMoved(std::span<const std::uint32_t> moved,
 bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> travel,
                         std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                         std::span<const ShapePair> forbidden, Executor* executor) {
-    const bool first = m_fat.size() != tight.size();
+    const bool first = m_fat.empty() && !tight.empty();
     if (!first && moved.empty()) {
         m_movedCount = 0;
         return false;
@@ -434,6 +472,8 @@ bool BroadPhase::update(std::span<const Bounds> tight, std::span<const Vec2> tra
         joinAll(proxies, forbidden, executor);
     } else {
         m_movedCount = static_cast<std::uint32_t>(moved.size());
+        m_fat.resize(tight.size());
+        m_isMoved.resize(tight.size(), 0);
         for (const std::uint32_t shape : moved) {
             m_fat[shape] = fattened(tight[shape], travel[shape]);
             m_isMoved[shape] = 1;

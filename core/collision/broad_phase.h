@@ -31,12 +31,21 @@ class BroadPhase {
         return shape < m_fat.size() && contains(m_fat[shape], tight);
     }
 
+    /// Shapes have come or gone. `placeOf`: by the place a shape had before, the one it has now, in
+    /// the same order, or `noPlace` if it is gone; empty if all are where they were. `proxies`: of
+    /// all that there are now; of those that stay `alone` is as it was. The next update must be
+    /// told of every newcomer as one that moved.
+    void renumber(std::span<const std::uint32_t> placeOf, std::span<const ShapeProxy> proxies);
+
+    /// Does not hold the shape any more: its pairs are found anew by the next update.
+    void letGo(std::uint32_t shape);
+
     /// Brings the pair list up to date. `tight`: bounds by shape; `travel`: how far each shape may
     /// move in a few ticks (m), a hint; `moved`: places of the shapes that the broad phase does not
     /// hold any more, none of them alone; at first it means nothing; `proxies`: the same from one
-    /// `clear` to the next; `forbidden`: sorted pairs of body places that a joint keeps from
-    /// touching. Bounds and travel of a shape alone are not read. Returns whether `pairs()`
-    /// changed.
+    /// `clear` or `renumber` to the next; `forbidden`: sorted pairs of body places that a joint
+    /// keeps from touching. Bounds and travel of a shape alone are not read. Returns whether
+    /// `pairs()` changed.
     bool update(std::span<const Bounds> tight, std::span<const Vec2> travel,
                 std::span<const std::uint32_t> moved, std::span<const ShapeProxy> proxies,
                 std::span<const ShapePair> forbidden, Executor* executor);
@@ -84,6 +93,7 @@ class BroadPhase {
         std::vector<ShapePair> found, stay, all;
     };
 
+    [[nodiscard]] static std::uint32_t tagOf(std::uint32_t shape, const ShapeProxy& proxy);
     [[nodiscard]] Entry entryOf(std::uint32_t shape, const ShapeProxy& proxy) const;
     void learnKinds(std::span<const ShapeProxy> proxies);
     void rebuildAll(std::span<const Bounds> tight, std::span<const Vec2> travel,

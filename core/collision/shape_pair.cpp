@@ -14,6 +14,15 @@ constexpr std::ptrdiff_t handful = 16;   // pairs of one shape that are sorted b
 
 }  // namespace
 
+void renumberPairs(std::vector<ShapePair>& pairs, std::span<const std::uint32_t> placeOf) {
+    auto to = pairs.begin();
+    for (const ShapePair& pair : pairs) {
+        const ShapePair now{placeOf[pair.a], placeOf[pair.b]};
+        if (now.a != noPlace && now.b != noPlace) *to++ = now;
+    }
+    pairs.erase(to, pairs.end());
+}
+
 void PairSorter::begin(std::size_t shapeCount, std::size_t count) {
     m_rangeBits = leastRangeBits;
     while (shapeCount >> m_rangeBits >= mostRanges) ++m_rangeBits;

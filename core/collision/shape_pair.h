@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/parallel/executor.h"
@@ -15,6 +16,13 @@ struct ShapePair {
     std::uint32_t b = 0;
     friend auto operator<=>(const ShapePair&, const ShapePair&) = default;
 };
+
+/// Where something is that is gone.
+inline constexpr std::uint32_t noPlace = 0xffffffffu;
+
+/// Gives both ends their new places: `placeOf` is by old place and rises, but for `noPlace`: pairs
+/// with an end that is gone go. What was sorted stays so.
+void renumberPairs(std::vector<ShapePair>& pairs, std::span<const std::uint32_t> placeOf);
 
 /// Collects pairs block by block, each worker into the block it works on, and sorts them all: a
 /// scatter to ranges of `a`, then a counting sort of each range in a core's first cache. Memory

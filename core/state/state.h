@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -37,6 +38,17 @@ std::optional<std::uint32_t> placeById(const std::vector<Record>& array, std::ui
                                      [](const Record& r, std::uint32_t k) { return r.id < k; });
     if (at == array.end() || at->id != id) return std::nullopt;
     return static_cast<std::uint32_t>(at - array.begin());
+}
+
+/// Leaves the elements at the places listed, which rise; places behind the last element mean
+/// nothing.
+template <class T>
+void keep(std::vector<T>& array, std::span<const std::uint32_t> places) {
+    std::size_t count = 0;
+    for (; count < places.size() && places[count] < array.size(); ++count) {
+        if (places[count] != count) array[count] = array[places[count]];
+    }
+    array.resize(count);
 }
 
 /// Calls `visit(name, arrays…)` for every array, with that of each state, in the order of

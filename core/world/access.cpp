@@ -91,13 +91,6 @@ void World::Data::contactsToState() const {
     contactsInState = true;
 }
 
-void World::Data::changeDefinitions() {
-    contactsToState();  // the places that contacts refer to are about to change
-    gathered = {};
-    accelerators.definitionsStale = true;
-    touchDefinitions();
-}
-
 World::World(std::unique_ptr<Data> data) : m_data(std::move(data)) {}
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;

@@ -150,15 +150,16 @@ void World::Data::layOutCandidates(Executor* executor) {
                        [](const Candidate& x, const Candidate& y) { return x.pair < y.pair; });
 }
 
-/// Takes the impulses of contacts whose manifold is kept out of the solver's rows. Others have had
-/// theirs fetched when they got a new manifold.
-void World::Data::fetchImpulses(Executor* executor) {
+/// Takes impulses out of the solver's rows: after the check of manifolds those of the kept ones, as
+/// others have had theirs fetched when they got a new one; before it all.
+void World::Data::fetchImpulses(Lanes which, Executor* executor) {
     Accelerators& acc = accelerators;
     overRange(executor, acc.solver.blockCount(), blockGrain,
               [&](std::uint32_t begin, std::uint32_t end) {
                   for (std::uint32_t lane = begin * blockLanes; lane < end * blockLanes; ++lane) {
                       const std::uint32_t contact = acc.plan.contactOfLane[lane];
-                      if (contact == none || !acc.solver.isKept(lane)) continue;
+                      if (contact == none) continue;
+                      if (which == Lanes::Kept && !acc.solver.isKept(lane)) continue;
                       acc.contactStamps[contact] = stamp;
                       setImpulses(acc.contacts[contact], acc.solver.impulses(lane));
                   }

@@ -142,21 +142,24 @@ void World::Data::build(const Scene& scene) {
     state.info().nextJoint = std::max(state.info().nextJoint, scene.counters.nextJoint);
 }
 
-void World::Data::rebuildShapes() {
-    assert(contactsInState);
-    accelerators = {};
-    accelerators.definitionsStale = false;
-    accelerators.shapesStamp = stamp;
+/// Makes what is derived of definitions for those bodies, shapes and joints that are behind the
+/// last one known, and for all what depends on the others.
+void World::Data::completeShapes() {
     Shapes& s = accelerators.shapes;
     const std::size_t bodies = state.bodies.size();
-    s.first.assign(bodies + 1, 0);
-    s.reach.assign(bodies, 0.0f);
+    const std::size_t knownBodies = s.reach.size(), knownShapes = s.hulls.size();
+    s.first.resize(bodies + 1);
+    s.reach.resize(bodies, 0.0f);
+    s.forbidden.clear();
+    s.kinematic.clear();
     std::vector<std::uint8_t> jointed(bodies, 0);
     for (std::uint32_t i = 0; i < state.joints.size(); ++i) {
         const JointInfo& j = state.joints[i];
-        const std::uint32_t b = *findBody(j.bodyB);
-        const std::uint32_t a = j.bodyA == 0 ? b : *findBody(j.bodyA);
-        s.jointBodies.push_back({a, b});
+        if (i == s.jointBodies.size()) {
+            const std::uint32_t b = *findBody(j.bodyB);
+            s.jointBodies.push_back({j.bodyA == 0 ? b : *findBody(j.bodyA), b});
+        }
+        const auto [a, b] = s.jointBodies[i];
         if (a == b || j.has(JointInfo::collideConnected)) continue;
         jointed[a] = jointed[b] = 1;
         s.forbidden.push_back({std::min(a, b), std::max(a, b)});
@@ -167,6 +170,12 @@ void World::Data::rebuildShapes() {
         const BodyInfo& info = state.bodies[body];
         s.first[body] = shape;
         if (info.type() == BodyType::Kinematic) s.kinematic.push_back(body);
+        if (body < knownBodies) {
+            for (; shape < knownShapes && s.proxies[shape].body == body; ++shape) {
+                s.proxies[shape].jointed = jointed[body] != 0;
+            }
+            continue;
+        }
         for (; shape < state.shapes.size() && state.shapes[shape].body == info.id; ++shape) {
             const ShapeInfo& record = state.shapes[shape];
             const Hull hull = hullOf<float>(record);

@@ -25,10 +25,10 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     applyCommands(commands);  // state, commands → bodies, shapes, joints
     timer.done(Stage::Commands);
 
-    if (accelerators.definitionsStale) rebuildShapes();
     const bool small = state.shapes.size() + state.joints.size() < planLimits.parallelFrom;
     Executor* executor = small ? nullptr : with.executor;
-    findPairs(executor);  // motions → bounds, candidate pairs by key
+    followDefinitions(executor);  // bodies, shapes, joints → what follows from them, places
+    findPairs(executor);          // motions → bounds, candidate pairs by key
     timer.done(Stage::Pairs);
 
     collideAll(with.simd, executor);  // motions, hulls → manifolds, matched impulses
@@ -96,7 +96,6 @@ void World::Data::findPairs(Executor* executor) {
     Accelerators& acc = accelerators;
     const Shapes& shapes = acc.shapes;
     const bool fresh = !acc.candidatesValid;  // nobody has looked yet
-    if (fresh) activity.assign(state.bodies.size(), restsNow);
     acc.tight.resize(shapes.hulls.size());
     acc.travel.resize(shapes.hulls.size());
 
@@ -118,13 +117,13 @@ void World::Data::findPairs(Executor* executor) {
                 activity[body] = now;
                 mine.anyAsleep |= isAsleep(now);
                 mine.othersMove |= (now == movesNow) != (before == movesNow);
-                if (!fresh && !isActive(before | now)) continue;
+                if (!isActive(before | now) && before != neverSeen) continue;
                 for (std::uint32_t s = shapes.first[body]; s < shapes.first[body + 1]; ++s) {
                     if (shapes.proxies[s].alone) continue;
                     acc.tight[s] =
                         grown(boundsOf(shapes.hulls[s], motion.pose()), 0.5f * speculativeDistance);
                     acc.travel[s] = ahead * motion.velocity;
-                    if (!fresh && !acc.broadPhase.holds(s, acc.tight[s])) mine.left.push_back(s);
+                    if (!acc.broadPhase.holds(s, acc.tight[s])) mine.left.push_back(s);
                 }
             }
         });
@@ -147,7 +146,7 @@ void World::Data::updatePlan(Executor* executor) {
     Accelerators& acc = accelerators;
     Plan& plan = acc.plan;
     if (acc.linksStale) {
-        if (acc.rowsHold) fetchImpulses(executor);
+        if (acc.rowsHold) fetchImpulses(Lanes::Kept, executor);
         acc.rowsHold = false;
         acc.linksStale = false;
         std::vector<Link> links;

@@ -22,7 +22,7 @@
 
 namespace huestep {
 
-/// Derived from the definitions; made again when bodies, shapes or joints come or go.
+/// Derived from the definitions; follows when bodies, shapes or joints come or go.
 struct Shapes {
     std::vector<Hull> hulls;           // by shape
     std::vector<ShapeProxy> proxies;   // by shape
@@ -47,7 +47,7 @@ struct Candidate {
 using Stamp = std::uint64_t;
 
 struct Accelerators {
-    bool definitionsStale = true;  // `shapes` and all below must be made again
+    bool definitionsStale = true;  // `shapes` and all below are empty and must be made
     Shapes shapes;
     std::vector<Bounds> tight;  // by shape, grown by half the speculative margin
     std::vector<Vec2> travel;   // by shape
@@ -57,7 +57,7 @@ struct Accelerators {
     bool candidatesValid = false;             // else contacts are to be read from `state.contacts`
     std::vector<Contact> contacts;            // touching; places are kept while they touch
     std::vector<std::uint32_t> freeContacts;  // places of `contacts` that none has
-    std::vector<std::uint8_t> inLanes;        // by contact: whether the solver's rows hold it
+    std::vector<std::uint8_t> inLanes;  // by contact: 1: the solver's rows hold it; contacts.cpp
     Plan plan;
     bool linksStale = true;  // contacts, joints or who moves may differ from the plan's
     bool rowsHold = false;   // the solver's contact rows are those of this plan
@@ -74,7 +74,14 @@ struct Accelerators {
 
 /// How a body takes part in a step: not at all; moved by it; a kinematic body that moves; asleep,
 /// and since when: what has slept from its start has contacts that nobody has looked at yet.
-enum : std::uint8_t { restsNow = 0, movesNow = 1, drivesNow = 2, sleepsNow = 4, newToSleep = 8 };
+enum : std::uint8_t {
+    restsNow = 0,
+    movesNow = 1,
+    drivesNow = 2,
+    sleepsNow = 4,
+    newToSleep = 8,
+    neverSeen = 16,  // before its first step, or its pairs are to be found anew: it may rest
+};
 constexpr bool isActive(std::uint8_t activity) {
     return (activity & (movesNow | drivesNow)) != 0;
 }
@@ -100,6 +107,13 @@ struct Carried {
     void become(const Carried& other, bool related);  // carried.cpp
 };
 
+/// Which records the removals of a step left, by place before them, rising. What stays moves
+/// together in this order; what the same step's spawns have added counts from the end.
+struct Kept {
+    bool all = true;  // else:
+    std::vector<std::uint32_t> bodies, shapes, joints;
+};
+
 /// How `state.contacts` was last gathered from the accelerators: while candidates and plan are the
 /// same, contacts that have kept their manifold are written anew in their impulses alone.
 struct Gathered {
@@ -122,6 +136,8 @@ struct World::Data : Carried {
     // Of one step.
     std::vector<BodyForce> forces;  // by body; empty: none
     bool anyAsleep = false;
+    bool edited = false;  // bodies, shapes or joints came or went, and accelerators do not know it
+    Kept kept;
     std::vector<std::uint8_t> removed;  // by body; empty: none
     std::vector<std::uint8_t> removedJoints;
 
@@ -134,7 +150,10 @@ struct World::Data : Carried {
     void contactsToState() const;
     void layOutRecords() const;
     /// To be called before bodies, shapes or joints come or go.
-    void changeDefinitions();
+    void changeDefinitions() {
+        edited = true;
+        touchDefinitions();
+    }
     /// To be called when the record of a body, shape or joint changes.
     void touchDefinitions() {
         definitionsStamp = stamp;
@@ -147,8 +166,17 @@ struct World::Data : Carried {
     void build(const Scene& scene);
     /// Takes out what was marked, wakes what it touched, reports its contacts as ended.
     void removeMarked();  // removal.cpp
+    void markJointsOfRemoved();
+    void endContactsOfRemoved();
     void closeGaps();
-    void rebuildShapes();
+    void completeShapes();
+
+    // carry_over.cpp
+    void followDefinitions(Executor* executor);
+    void carryOver(Executor* executor);
+    void renumberAccelerators(std::span<const std::uint32_t> bodyPlace,
+                              std::span<const std::uint32_t> shapePlace, Executor* executor);
+    void lookAgainAtFreed(std::span<const ShapePair> forbidden);
 
     // spawn.cpp
     Rejection judge(const Spawn& spawn, PlayerId author);
@@ -176,7 +204,8 @@ struct World::Data : Carried {
     void dropContact(std::uint32_t contact);
     [[nodiscard]] ContactChange changeOf(const Contact& contact) const;
     void collideAll(Simd simd, Executor* executor);
-    void fetchImpulses(Executor* executor);
+    enum class Lanes : std::uint8_t { Kept, All };
+    void fetchImpulses(Lanes which, Executor* executor);
 
     // sleep.cpp
     bool wakeTouched(bool contactDisturbs);

@@ -167,6 +167,84 @@ TEST(BroadPhase, FindsEveryAllowedOverlapOfMovingShapesHoweverTheyMove) {
     }
 }
 
+/// Takes shapes out of a field at random, with whole bodies or not, and puts new ones behind the
+/// others; says where the old ones are now, and whom the broad phase must be told of.
+struct Exchange {
+    Scatter field;
+    std::vector<std::uint32_t> placeOf, fresh;
+
+    Exchange(Random& random, const Scatter& old, const Scatter& source) : field(0) {
+        const std::uint32_t share = 2 + random.below(20);  // many go, or few
+        std::vector<std::uint32_t> bodyPlace(old.proxies.back().body + 1, noPlace);
+        std::uint32_t bodies = 0;
+        const auto add = [&](const Scatter& from, std::uint32_t i, std::uint32_t body) {
+            field.all.push_back(static_cast<std::uint32_t>(field.all.size()));
+            field.tight.push_back(from.tight[i]);
+            field.travel.push_back(from.travel[i]);
+            field.proxies.push_back(from.proxies[i]);
+            field.proxies.back().body = body;
+        };
+        for (const std::uint32_t i : old.all) {
+            placeOf.push_back(random.once(share) ? noPlace
+                                                 : static_cast<std::uint32_t>(field.all.size()));
+            if (placeOf[i] == noPlace) continue;
+            std::uint32_t& place = bodyPlace[old.proxies[i].body];
+            if (place == noPlace) place = bodies++;
+            add(old, i, place);
+        }
+        for (std::uint32_t i = random.below(30); i > 0; --i) {
+            fresh.push_back(static_cast<std::uint32_t>(field.all.size()));
+            add(source, random.below(source.all.size()), bodies++);
+        }
+        field.forbidden = old.forbidden;
+        renumberPairs(field.forbidden, bodyPlace);
+        sortIntoKinds(field.proxies);
+    }
+};
+
+TEST(BroadPhase, CarriesItsPairsOverWhenShapesComeAndGo) {
+    Random random(75);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 40; ++trial) {
+        Scatter field = randomField(random, 60 + random.below(300), 12.0, trial % 2 == 0);
+        BroadPhase phase;
+        field.update(phase, field.all);
+        for (int tick = 0; tick < 10; ++tick) {
+            const Scatter source = randomField(random, 40, 12.0, trial % 2 == 0);
+            Exchange exchange(random, field, source);
+            std::vector<std::uint32_t> left = exchange.fresh;
+            bool sameAlone = true;
+            for (const std::uint32_t i : field.all) {
+                const std::uint32_t now = exchange.placeOf[i];
+                if (now == noPlace) continue;
+                sameAlone =
+                    sameAlone && field.proxies[i].alone == exchange.field.proxies[now].alone;
+            }
+            field = exchange.field;
+            if (sameAlone) {
+                phase.renumber(exchange.placeOf, field.proxies);
+                // A joint is gone: two bodies may touch again.
+                if (!field.forbidden.empty()) {
+                    const ShapePair freed = field.forbidden.back();
+                    field.forbidden.pop_back();
+                    for (const std::uint32_t i : field.all) {
+                        const std::uint32_t body = field.proxies[i].body;
+                        if (body != freed.a && body != freed.b) continue;
+                        phase.letGo(i);
+                        left.push_back(i);
+                    }
+                }
+            } else {
+                phase.clear();
+                left = field.all;
+            }
+            field.update(phase, left);
+            field.expectComplete(phase);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
 TEST(BroadPhase, FindsTheSamePairsOnAnyNumberOfThreads) {
     Random random(72);
     SCOPED_TRACE(random.trace());
