@@ -15,6 +15,9 @@ namespace {
 constexpr std::uint32_t blockGrain = 16;  // of rows: 256 contacts
 constexpr std::uint32_t candidateGrain = 512;
 constexpr std::uint32_t layOutGrain = 4096;  // pairs
+// In `inLanes`: the contact ended in its row. Its candidate learns that from here when it is looked
+// at, which is before anybody gets the contact's place.
+constexpr std::uint8_t endedInLane = 2;
 // Kept manifolds may slide this part of the smaller shape's size: past that a small box would stand
 // on the air beside its ledge.
 constexpr float recyclePart = 0.2f;
@@ -235,13 +238,9 @@ void Collide::collect(const std::vector<Findings>& findings) {
         m_disturbs |= f.disturbs;
         m_acc.freshLanes.insert(m_acc.freshLanes.end(), f.fresh.begin(), f.fresh.end());
         for (const std::uint32_t contact : f.ended) {
-            const Contact& c = m_acc.contacts[contact];
-            const auto at = std::lower_bound(
-                m_acc.candidates.begin(), m_acc.candidates.end(), ShapePair{c.placeA, c.placeB},
-                [](const Candidate& x, const ShapePair& pair) { return x.pair < pair; });
-            at->contact = none;
-            events.ends.push_back(m_world.changeOf(c));
+            events.ends.push_back(m_world.changeOf(m_acc.contacts[contact]));
             m_world.dropContact(contact);
+            m_acc.inLanes[contact] = endedInLane;
         }
         for (const auto& [candidate, contact] : f.begun) {
             m_acc.candidates[candidate].contact = m_world.addContact(contact);
@@ -318,6 +317,7 @@ void Collide::lookAt(std::uint32_t candidate, Findings& mine) {
     }
     if (place != none) {
         note(place, updateContact(m_acc.contacts[place], m_in), mine);
+        if (m_acc.contacts[place].pointCount == 0) m_acc.candidates[candidate].contact = none;
         return;
     }
     const Manifold manifold = manifoldOf(bodyA, bodyB, pair.a, pair.b, m_in);
@@ -337,13 +337,17 @@ void Collide::lookAtCandidates() {
         const std::uint8_t nobody = 0;
         const std::uint8_t* inLanes = m_acc.inLanes.empty() ? &nobody : m_acc.inLanes.data();
         for (std::uint32_t i = begin; i < end; ++i) {
-            const Candidate& candidate = m_acc.candidates[i];
+            Candidate& candidate = m_acc.candidates[i];
             const bool overlap =
                 overlaps(m_acc.tight[candidate.pair.a], m_acc.tight[candidate.pair.b]);
-            const bool apart = candidate.contact == none;
-            const bool held = inLanes[apart ? 0 : candidate.contact] != 0;
+            bool apart = candidate.contact == none;
+            const std::uint8_t lane = inLanes[apart ? 0 : candidate.contact];
+            if (!apart && lane == endedInLane) {
+                candidate.contact = none;
+                apart = true;
+            }
             near[nearCount] = i;
-            nearCount += (apart ? overlap : !held) ? 1u : 0u;
+            nearCount += (apart ? overlap : lane == 0) ? 1u : 0u;
         }
         for (std::size_t k = 0; k < nearCount; ++k) {
             lookAt(near[k], findings[begin / candidateGrain]);
