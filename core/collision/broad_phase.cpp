@@ -422,11 +422,11 @@ void BroadPhase::joinAll(std::span<const ShapeProxy> proxies, std::span<const Sh
     // Fewer are joined and sorted before a team is awake.
     if (count < joinSerially) executor = nullptr;
     const std::uint32_t grain = std::max(joinGrain, count / mostJoinBlocks + 1);
-    m_sorter.begin(m_fat.size(), (count + grain - 1) / grain);
+    m_scratch.sorter.begin(m_fat.size(), (count + grain - 1) / grain);
     overBlocks(executor, count, grain, [&](std::uint32_t begin, std::uint32_t end) {
-        joinBlock(begin, end, proxies, forbidden, m_sorter.block(begin / grain));
+        joinBlock(begin, end, proxies, forbidden, m_scratch.sorter.block(begin / grain));
     });
-    m_sorter.sortInto(m_scratch.all, executor);
+    m_scratch.sorter.sortInto(m_scratch.all, executor);
 }
 
 /// Pairs without a moved shape stay; those with one are found anew.

@@ -91,6 +91,7 @@ class BroadPhase {
         Scratch& operator=(const Scratch&) { return *this; }
         std::vector<Entry> entries;
         std::vector<ShapePair> found, stay, all;
+        PairSorter sorter;
     };
 
     [[nodiscard]] static std::uint32_t tagOf(std::uint32_t shape, const ShapeProxy& proxy);
@@ -124,7 +125,6 @@ class BroadPhase {
     std::vector<std::uint8_t> m_isMoved;  // by shape; all zero between updates
     std::uint32_t m_movedCount = 0;
 
-    PairSorter m_sorter;
     Scratch m_scratch;
 };
 

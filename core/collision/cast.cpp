@@ -4,10 +4,6 @@ namespace huestep {
 
 namespace {
 
-constexpr std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
-
 /// Keeps the earliest hit.
 void consider(std::optional<HullHit>& best, float fraction, Vec2 normal) {
     if (!(fraction >= 0.0f && fraction <= 1.0f)) return;
@@ -42,14 +38,14 @@ bool inside(const Hull& hull, Vec2 p) {
     if (hull.count >= 3) {
         bool core = true;
         for (int i = 0; i < hull.count; ++i) {
-            core = core && dot(hull.normals[at(i)], p - hull.vertices[at(i)]) <= 0.0f;
+            core = core && dot(hull.normals[asIndex(i)], p - hull.vertices[asIndex(i)]) <= 0.0f;
         }
         if (core) return true;
     }
     const float r2 = hull.radius * hull.radius;
     for (int i = 0; i < hull.count; ++i) {
-        const Vec2 v1 = hull.vertices[at(i)];
-        const Vec2 edge = hull.vertices[at(hull.next(i))] - v1;
+        const Vec2 v1 = hull.vertices[asIndex(i)];
+        const Vec2 edge = hull.vertices[asIndex(hull.next(i))] - v1;
         const float l2 = lengthSquared(edge);
         const float t = l2 > 0.0f ? clampTo(dot(p - v1, edge) / l2, 0.0f, 1.0f) : 0.0f;
         if (lengthSquared(p - (v1 + t * edge)) < r2) return true;
@@ -65,11 +61,11 @@ std::optional<HullHit> castRayAtHull(const Hull& hull, Vec2 from, Vec2 to) {
     const Vec2 d = to - from;
     const int edges = hull.oneSided ? 1 : hull.count;
     for (int i = 0; i < edges; ++i) {
-        if (hull.radius > 0.0f) castAtCircle(best, hull.vertices[at(i)], hull.radius, from, d);
+        if (hull.radius > 0.0f) castAtCircle(best, hull.vertices[asIndex(i)], hull.radius, from, d);
         if (hull.count < 2) continue;
-        const Vec2 out = hull.radius * hull.normals[at(i)];
-        castAtEdge(best, hull.vertices[at(i)] + out, hull.vertices[at(hull.next(i))] + out,
-                   hull.normals[at(i)], from, d);
+        const Vec2 out = hull.radius * hull.normals[asIndex(i)];
+        castAtEdge(best, hull.vertices[asIndex(i)] + out,
+                   hull.vertices[asIndex(hull.next(i))] + out, hull.normals[asIndex(i)], from, d);
     }
     return best;
 }

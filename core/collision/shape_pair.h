@@ -26,13 +26,9 @@ void renumberPairs(std::vector<ShapePair>& pairs, std::span<const std::uint32_t>
 
 /// Collects pairs block by block, each worker into the block it works on, and sorts them all: a
 /// scatter to ranges of `a`, then a counting sort of each range in a core's first cache. Memory
-/// stays for the next use; a copy starts with none.
+/// stays for the next use.
 class PairSorter {
  public:
-    PairSorter() = default;
-    PairSorter(const PairSorter&) {}
-    PairSorter& operator=(const PairSorter&) { return *this; }
-
     /// Empties `count` blocks. Pairs to come are of shapes below `shapeCount`.
     void begin(std::size_t shapeCount, std::size_t count);
     /// Thread rule: one worker a block.

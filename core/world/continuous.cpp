@@ -116,9 +116,11 @@ class Stopper {
         }
     }
 
+    /// What was found for one shape, in memory that serves the next.
     struct Scratch {
         std::vector<std::uint32_t> near;
         std::vector<Wall> walls;
+        SweptHull body;  ///< how the shape goes; where there are walls
     };
 
     [[nodiscard]] Stop stopOf(const Leap& leap, Scratch& scratch) const {
@@ -127,7 +129,7 @@ class Stopper {
             if (m_known.proxies[s].alone || !(m_known.thickness[s] > 0.0f)) continue;
             findWalls(s, leap, scratch);
             if (scratch.walls.empty()) continue;
-            const SweptHull body = swept(s, leap.body, leap.from);
+            const SweptHull& body = scratch.body;
             // Of a floor of many boxes it is as deep in the next one as in those it lies on.
             float sunk = 0.0f;
             for (const Wall& wall : scratch.walls) sunk = minOf(sunk, wall.before.distance);
@@ -214,7 +216,8 @@ class Stopper {
         m_acc.broadPhase.findFixed(shape, wayOfDriven, m_known.proxies, m_known.forbidden,
                                    scratch.near);
         if (scratch.near.empty()) return;
-        const SweptHull body = swept(shape, leap.body, leap.from);
+        scratch.body = swept(shape, leap.body, leap.from);
+        const SweptHull& body = scratch.body;
         std::sort(scratch.near.begin(), scratch.near.end());
         for (const std::uint32_t other : scratch.near) {
             const std::uint32_t place = m_known.proxies[other].body;
