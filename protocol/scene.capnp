@@ -86,6 +86,11 @@ enum JointKind {
   prismatic @4; # a point of body B slides along `axis`, neither body turns against the other
 }
 
+enum Method {
+  softStep @0;    # coloured Gauss-Seidel with soft rows and substeps: the product
+  sequential @1;  # the same in key order, one constraint after another
+}
+
 struct Joint {
   # Between two bodies of the same list, given by their places in it.
   id @0 :UInt32;
@@ -167,4 +172,5 @@ struct Scene {
     nextShape @16 :UInt32 = 1;
     nextJoint @17 :UInt32 = 1;
   }
+  method @18 :Method = softStep;      # how constraints are solved
 }

@@ -26,6 +26,9 @@ template <>
 inline constexpr auto wordsOf<JointKind> =
     std::to_array<std::string_view>({"revolute", "distance", "mouse", "weld", "prismatic"});
 
+template <>
+inline constexpr auto wordsOf<Method> = std::to_array<std::string_view>({"softStep", "sequential"});
+
 template <class Visitor>
 void visitFields(Visitor& v, std::type_identity<Vec2>) {
     v.required("x", &Vec2::x);
@@ -159,6 +162,7 @@ void visitFields(Visitor& v, std::type_identity<Scene>) {
     v.field("players", &Scene::players);
     v.field("limits", &Scene::limits);
     v.field("counters", &Scene::counters);
+    v.field("method", &Scene::method);
 }
 
 }  // namespace huestep::protocol

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/box2d/engine.h"
+#include "core/solver/method.h"
 #ifdef HUESTEP_HAS_BOX2D3
 #include "core/box2d/engine3.h"
 #endif
@@ -49,6 +50,15 @@ Status checkEngine(const std::string& name, const std::vector<std::string>& name
     std::string list;
     for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
     return Error{"--engine: there is no '" + name + "' here; there is " + list};
+}
+
+Result<Method> parseMethod(const std::string& name) {
+    if (const std::optional<Method> method = methodNamed(name)) return *method;
+    std::string list;
+    for (const MethodTraits& known : allMethods()) {
+        list += (list.empty() ? "" : ", ") + std::string(known.name);
+    }
+    return Error{"--method: there is no '" + name + "'; there is " + list};
 }
 
 bool takesThreads(const std::string& name) {

@@ -21,6 +21,9 @@ std::vector<std::string> benchEngineNames();
 /// Refuses a name that is not in the list, with a sentence that shows the list.
 Status checkEngine(const std::string& name, const std::vector<std::string>& names);
 
+/// A method by its name; fails with a sentence that shows the list.
+Result<Method> parseMethod(const std::string& name);
+
 /// Whether an engine can be told how many threads to use.
 bool takesThreads(const std::string& name);
 

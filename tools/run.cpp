@@ -26,6 +26,7 @@ struct Options {
     int threads = 1;
     std::string simd = "auto";
     std::uint32_t substeps = 0;   // 0: the scene's own
+    std::string method;           // empty: the scene's own
     std::uint64_t hashEvery = 0;  // 0: never
     std::string snapshot;
     bool explain = false;
@@ -37,6 +38,8 @@ Status checkOptions(const Options& o) {
     if (o.engine == "huestep") return Done{};
     if (o.substeps != 0)
         return Error{"--substeps: " + o.engine + " takes 8 velocity and 3 position iterations"};
+    if (!o.method.empty())
+        return Error{"--method: " + o.engine + " has its own; only huestep can choose"};
     if (o.explain) return Error{"--explain: only huestep says how its steps are laid out"};
     if (o.threads != 1 || o.simd != "auto")
         return Error{"--threads and --simd: " + o.engine +
@@ -98,6 +101,11 @@ Answer run(const Options& options) {
     if (!named) return named.error();
     Scene& scene = named->scene;
     if (options.substeps != 0) scene.substeps = options.substeps;
+    if (!options.method.empty()) {
+        const Result<Method> method = parseMethod(options.method);
+        if (!method) return method.error();
+        scene.method = *method;
+    }
     const std::uint64_t ticks = options.ticks != 0 ? options.ticks : named->ticks;
     if (const Status fine = checkHashes(options.hashEvery, ticks, options.json); !fine)
         return fine.error();
@@ -154,6 +162,7 @@ void addRun(Menu& menu) {
     sub->add_option("--simd", o->simd, "auto, scalar, sse2, avx2, avx512 or neon (default: auto)");
     sub->add_option("--substeps", o->substeps, "Substeps a tick (default: the scene's own)")
         ->transform(wholeNumber(1, 64));
+    sub->add_option("--method", o->method, "How constraints are solved (default: the scene's own)");
     sub->add_option("--hash-every", o->hashEvery, "Print the hashes after every K ticks")
         ->transform(wholeNumber(1));
     sub->add_option("--snapshot", o->snapshot, "Write the state after the last tick to this file");

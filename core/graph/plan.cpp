@@ -11,6 +11,7 @@ namespace {
 struct Builder {
     Plan& plan;
     PlanLimits limits;
+    PlanDemand demand;
 
     std::vector<std::uint8_t> moves;           // by body: whether it is awake
     std::vector<std::uint32_t> constraintsOf;  // island representative → constraints
@@ -66,6 +67,7 @@ void Builder::packBatches() {
             const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
             plan.batches.push_back({});
             plan.batches.back().giant = giant;
+            plan.batches.back().substeps = demand.substeps;
             batchOf[body] = fresh;
             if (!giant) open = fresh;
         } else {
@@ -131,9 +133,18 @@ void Builder::colourBatch(std::uint32_t batch) {
         std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(local.size()),
                          plan.jointLinks) -
         begin);
-    std::vector<HubRun> hubs = findHubs(std::span<const ConstraintBodies>(local).subspan(joints),
-                                        b.endPlace - b.firstPlace, limits.hubDegree);
+    std::vector<HubRun> hubs;
     std::vector<std::uint8_t> colours(local.size(), 0);
+    if (!demand.colours) {
+        for (std::size_t i = 0; i < local.size(); ++i) {
+            const bool moving = local[i].a >= 0 && local[i].b >= 0;
+            colours[i] = moving ? overflowColour : fixedOverflowColour;
+        }
+        layOut(batch, places, colours, hubs);
+        return;
+    }
+    hubs = findHubs(std::span<const ConstraintBodies>(local).subspan(joints),
+                    b.endPlace - b.firstPlace, limits.hubDegree);
     for (HubRun& run : hubs) {
         run.hub += first;
         for (std::uint32_t& i : run.constraints) {
@@ -289,7 +300,8 @@ void Builder::layOutHubs(std::uint32_t batch, std::uint8_t colour,
 }  // namespace
 
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount, PlanLimits limits) {
+              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount, PlanLimits limits,
+              PlanDemand demand) {
     plan.links = std::move(links);
     plan.jointLinks = jointLinks;
     plan.awake = std::move(awake);
@@ -304,7 +316,7 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.colours = plan.overflow = plan.inBuckets = 0;
     plan.sharedFrom = limits.sharedFrom;
 
-    Builder builder{plan, limits, {}, {}, {}, {}, {}, {}, {}};
+    Builder builder{plan, limits, demand, {}, {}, {}, {}, {}, {}, {}};
     builder.moves.assign(bodyCount, 0);
     for (const std::uint32_t body : plan.awake) builder.moves[body] = 1;
     builder.findAllIslands();

@@ -42,6 +42,7 @@ struct Batch {
     std::uint32_t firstJoint = 0, endJoint = 0;    ///< in solving order
     std::uint32_t firstRevoluteBlock = 0, endRevoluteBlock = 0;
     std::uint32_t constraints = 0;
+    std::uint32_t substeps = 1;
     bool giant = false;
 };
 
@@ -88,9 +89,16 @@ struct PlanLimits {
     std::uint32_t parallelFrom = 512;
 };
 
+/// What a step asks of its plan.
+struct PlanDemand {
+    std::uint32_t substeps = 4;
+    bool colours = true;  ///< else key order alone: all goes to the overflow
+};
+
 /// Makes the plan. `links` and `awake` are moved in; bodies that are not awake are read by the
 /// solver and never written.
 void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
-              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount, PlanLimits limits = {});
+              std::vector<std::uint32_t>&& awake, std::uint32_t bodyCount, PlanLimits limits = {},
+              PlanDemand demand = {});
 
 }  // namespace huestep

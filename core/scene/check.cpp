@@ -385,6 +385,7 @@ bool Checker::scene(const Scene& scene) {
         !within(root.at("substeps"), scene.substeps, 1u, 64u) || !limits(scene)) {
         return false;
     }
+    if (scene.method > lastMethod) return fail(root.at("method"), "is no method");
     const auto tooMany = [&](std::string_view list, std::size_t count, std::uint32_t most) {
         return fail(root.at(list), text(count) + " are more than the " + text(most) +
                                        " of limits." + std::string(list));

@@ -205,11 +205,20 @@ struct Counters {
     friend bool operator==(const Counters&, const Counters&) = default;
 };
 
+/// How constraints are solved (core/solver/method.h). Part of a world's state, as every one of them
+/// gives another future.
+enum class Method : std::uint8_t {
+    SoftStep,    ///< coloured Gauss-Seidel with soft rows and substeps: the product
+    Sequential,  ///< the same in key order, one constraint after another
+};
+inline constexpr Method lastMethod = Method::Sequential;
+
 struct Scene {
     std::string name;                  ///< for people, ≤ 256 bytes; no part of a world's state
     Vec2 gravity{0.0f, -10.0f};        ///< m/s², ±10,000
     float stepSeconds = 1.0f / 60.0f;  ///< s, length of one tick, [0.0001, 0.1]
-    std::uint32_t substeps = 4;        ///< of a tick, [1, 64]
+    std::uint32_t substeps = 4;        ///< of a tick, [1, 64]; of methods without: iterations
+    Method method = Method::SoftStep;
     bool sleep = true;                 ///< whether islands at rest fall asleep
     std::vector<BodyDef> bodies;
     std::vector<JointDef> joints;

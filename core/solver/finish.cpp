@@ -5,7 +5,7 @@
 #include "core/math/finite.h"
 #include "core/math/trig.h"
 #include "core/parallel/over_range.h"
-#include "core/solver/soft_step.h"
+#include "core/solver/solve.h"
 
 namespace huestep {
 
@@ -87,7 +87,7 @@ class Findings {
 
 }  // namespace
 
-Moved SoftStep::finish(const Plan& plan, const SolverWorld& world, Executor* executor) {
+Moved finish(const Rows& rows, const Plan& plan, const SolverWorld& world, Executor* executor) {
     const std::size_t places = plan.bodyOfPlace.size();
     auto ofPlaces = perBlock<Findings>(places, bodyGrain);
     overRange(executor, places, bodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
@@ -95,7 +95,7 @@ Moved SoftStep::finish(const Plan& plan, const SolverWorld& world, Executor* exe
             const std::uint32_t body = plan.bodyOfPlace[place];
             // Neither kinematic bodies nor the lanes' copies of hubs.
             if (!world.bodies[body].dynamic() || plan.isCopy[place] != 0) continue;
-            const SolverBody& s = m_bodies[place];
+            const SolverBody& s = rows.bodies[place];
             const BodyMotion& motion = world.motions[body];
             BodyMotion next = motion;
             next.position = motion.position + Vec2{s.dx, s.dy};

@@ -1,12 +1,13 @@
 // Rows of a step: from contacts, joints and motions before it, and back into them after it.
 
+#include "core/solver/rows.h"
+
 #include <algorithm>
 #include <array>
 
 #include "core/math/finite.h"
 #include "core/solver/body_lanes.h"
 #include "core/solver/contact_kernels.h"
-#include "core/solver/soft_step.h"
 
 namespace huestep {
 
@@ -68,16 +69,23 @@ void writeLane(const Fields<float>& record, Fields<LaneRow>& rows, std::uint32_t
 
 }  // namespace
 
-void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range places) {
-    const float h = world.stepSeconds / static_cast<float>(world.substeps);
+void Rows::fit(const Plan& plan) {
+    bodies.resize(plan.bodyOfPlace.size());
+    poses.resize(plan.bodyOfPlace.size());
+    sources.resize(plan.bodyOfPlace.size());
+    pushed.resize(plan.bodyOfPlace.size());
+    joints.resize(plan.jointOrder.size());
+    revolutes.resize(plan.revoluteOfLane.size() / blockLanes);
+    blocks.resize(plan.contactOfLane.size() / blockLanes);
+    blockFeatures.resize(blocks.size());
+    bodies[0] = {};
+    poses[0] = {};
+    sources[0] = {};
+}
+
+void Rows::prepareBodies(const Plan& plan, const SolverWorld& world, float h, Range places) {
     for (std::uint32_t place = places.begin; place < places.end; ++place) {
         const std::uint32_t body = plan.bodyOfPlace[place];
-        if (body == none) {
-            m_bodies[place] = {};
-            m_poses[place] = {};
-            m_sources[place] = {};
-            continue;
-        }
         const BodyMotion& motion = world.motions[body];
         const BodyInfo& info = world.bodies[body];
         SolverBody moving;
@@ -87,10 +95,9 @@ void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range p
             moving.w = motion.angularVelocity;
         }
         moving.inverseMass = info.inverseMass;
-        m_bodies[place] = moving;
-        m_poses[place] = {motion.position.x, motion.position.y, motion.rotation.c,
-                          motion.rotation.s};
-        Source source;
+        bodies[place] = moving;
+        poses[place] = {motion.position.x, motion.position.y, motion.rotation.c, motion.rotation.s};
+        BodySource source;
         source.inverseInertia = info.inverseInertia;
         if (info.dynamic()) {
             source.acceleration = info.gravityScale * world.gravity;
@@ -107,76 +114,73 @@ void SoftStep::prepareBodies(const Plan& plan, const SolverWorld& world, Range p
             source.linearFactor = 1.0f / (1.0f + h * info.linearDamping);
             source.angularFactor = 1.0f / (1.0f + h * info.angularDamping);
         }
-        m_sources[place] = source;
+        sources[place] = source;
     }
 }
 
-JointRow SoftStep::jointRow(const SolverWorld& world, std::uint32_t joint,
-                            const ConstraintBodies& places) const {
-    const float h = world.stepSeconds / static_cast<float>(world.substeps);
+JointRow Rows::jointRow(const SolverWorld& world, std::uint32_t joint,
+                        const ConstraintBodies& places, float h) const {
     const JointInfo& info = world.joints[joint];
-    const ConstraintPlaces& bodies = world.jointBodies[joint];
-    JointRow row = prepareJoint(info, world.jointImpulses[joint], joint,
-                                world.motions[bodies.a].pose(), world.motions[bodies.b].pose(), h);
+    const ConstraintPlaces& of = world.jointBodies[joint];
+    JointRow row = prepareJoint(info, world.jointImpulses[joint], joint, world.motions[of.a].pose(),
+                                world.motions[of.b].pose(), h);
     row.bodyA = info.kind() == JointKind::Mouse ? fixedWorld : places.a;
     row.bodyB = places.b;
     const auto a = static_cast<std::size_t>(readPlace(row.bodyA));
     const auto b = static_cast<std::size_t>(readPlace(row.bodyB));
-    row.mA = m_bodies[a].inverseMass;
-    row.iA = m_sources[a].inverseInertia;
-    row.mB = m_bodies[b].inverseMass;
-    row.iB = m_sources[b].inverseInertia;
+    row.mA = bodies[a].inverseMass;
+    row.iA = sources[a].inverseInertia;
+    row.mB = bodies[b].inverseMass;
+    row.iB = sources[b].inverseInertia;
     return row;
 }
 
-void SoftStep::prepareJoints(const Plan& plan, const SolverWorld& world, Range joints) {
-    for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
-        m_joints[i] = jointRow(world, plan.jointOrder[i], plan.jointPlaces[i]);
+void Rows::prepareJoints(const Plan& plan, const SolverWorld& world, float h, Range range) {
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        joints[i] = jointRow(world, plan.jointOrder[i], plan.jointPlaces[i], h);
     }
 }
 
-void SoftStep::prepareRevolutes(const Plan& plan, const SolverWorld& world, Range blocks) {
-    for (std::uint32_t index = blocks.begin; index < blocks.end; ++index) {
-        RevoluteBlock& block = m_revolutes[index];
+void Rows::prepareRevolutes(const Plan& plan, const SolverWorld& world, float h, Range range) {
+    for (std::uint32_t index = range.begin; index < range.end; ++index) {
+        RevoluteBlock& block = revolutes[index];
         for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
             const std::uint32_t at = index * blockLanes + lane;
             const std::uint32_t joint = plan.revoluteOfLane[at];
             if (joint == none) {
                 clearRevoluteLane(block, lane);
             } else {
-                setRevoluteLane(block, lane, jointRow(world, joint, plan.revolutePlaces[at]));
+                setRevoluteLane(block, lane, jointRow(world, joint, plan.revolutePlaces[at], h));
             }
         }
         findParts(block);
     }
 }
 
-void SoftStep::prefetchContacts(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
+void Rows::prefetchContacts(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
     for (std::uint32_t at = block * blockLanes; at < (block + 1) * blockLanes; ++at) {
         const std::uint32_t place = plan.contactOfLane[at];
         if (place != none) prefetch(world.contacts[place]);
     }
 }
 
-void SoftStep::prepareBlocks(const Plan& plan, const SolverWorld& world,
-                             const ContactKernels& kernels, Range blocks,
-                             ContactFeatures& features) {
-    for (std::uint32_t block = blocks.begin; block < blocks.end; ++block) {
+void Rows::prepareContacts(const Plan& plan, const SolverWorld& world,
+                           const ContactKernels& kernels, Range range, ContactFeatures& features) {
+    for (std::uint32_t block = range.begin; block < range.end; ++block) {
         if (!world.rowsHold) {
             // Contacts lie anywhere: those of the next block are on their way while this is made.
-            if (block + 1 < blocks.end) prefetchContacts(plan, world, block + 1);
+            if (block + 1 < range.end) prefetchContacts(plan, world, block + 1);
             makeBlock(plan, world, block);
         }
-        m_blocks[block].shares = 0;
-        features = features | m_blockFeatures[block];
+        blocks[block].shares = 0;
+        features = features | blockFeatures[block];
     }
-    if (blocks.begin == blocks.end) return;
-    kernels.refresh(m_bodies.data(), m_poses.data(), &m_blocks[blocks.begin],
-                    blocks.end - blocks.begin);
+    if (range.begin == range.end) return;
+    kernels.refresh(bodies.data(), poses.data(), &blocks[range.begin], range.end - range.begin);
 }
 
-void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
-    ContactBlock& rows = m_blocks[block];
+void Rows::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block) {
+    ContactBlock& rows = blocks[block];
     ContactFeatures features;
     bool anyWarm = false;
     std::array<const Contact*, blockLanes> contacts{};
@@ -186,11 +190,11 @@ void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32
         // Padding reads the world and writes to nowhere.
         const Contact& contact = place == none ? nothing : world.contacts[place];
         contacts[lane] = &contact;
-        const ConstraintBodies bodies = plan.lanePlaces[at];
-        rows.bodyA[lane] = bodies.a;
-        rows.bodyB[lane] = bodies.b;
-        rows.warmA[lane] = warmPlace(plan, bodies.a);
-        rows.warmB[lane] = warmPlace(plan, bodies.b);
+        const ConstraintBodies places = plan.lanePlaces[at];
+        rows.bodyA[lane] = places.a;
+        rows.bodyB[lane] = places.b;
+        rows.warmA[lane] = warmPlace(plan, places.a);
+        rows.warmB[lane] = warmPlace(plan, places.b);
         anyWarm = anyWarm || rows.warmA[lane] >= 0 || rows.warmB[lane] >= 0;
         rows.motionA[lane] = static_cast<std::int32_t>(contact.bodyA);
         rows.motionB[lane] = static_cast<std::int32_t>(contact.bodyB);
@@ -208,44 +212,42 @@ void SoftStep::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32
             contacts, rows.points[i], [i](const Contact& c) -> auto& { return c.points[i]; });
     }
     rows.anyWarm = anyWarm ? -1 : 0;
-    m_blockFeatures[block] = features;
+    blockFeatures[block] = features;
 }
 
-void SoftStep::writeRow(std::uint32_t lane, const Contact& contact) {
-    ContactBlock& rows = m_blocks[lane / blockLanes];
+void Rows::writeRow(std::uint32_t lane, const Contact& contact) {
+    ContactBlock& rows = blocks[lane / blockLanes];
     writeLane<ContactFields>(contact.row, rows, lane % blockLanes);
     for (std::size_t i = 0; i < 2; ++i) {
         writeLane<ContactPointFields>(contact.points[i], rows.points[i], lane % blockLanes);
     }
 }
 
-void SoftStep::check(std::span<const BodyMotion> motions, std::span<const Bounds> bounds, Simd simd,
-                     Range blocks) {
-    contactKernels(simd).check(motions.data(), bounds.data(), &m_blocks[blocks.begin],
-                               blocks.end - blocks.begin);
+void Rows::check(std::span<const BodyMotion> motions, std::span<const Bounds> bounds, Simd simd,
+                 Range range) {
+    contactKernels(simd).check(motions.data(), bounds.data(), &blocks[range.begin],
+                               range.end - range.begin);
 }
 
-std::uint64_t SoftStep::bytes() const {
-    const auto of = [](const auto& rows) { return rows.size() * sizeof(rows[0]); };
-    return of(m_bodies) + of(m_poses) + of(m_sources) + of(m_blocks) + of(m_joints) +
-           of(m_revolutes);
+std::uint64_t Rows::bytes() const {
+    const auto of = [](const auto& array) { return array.size() * sizeof(array[0]); };
+    return of(bodies) + of(poses) + of(sources) + of(blocks) + of(joints) + of(revolutes);
 }
 
-bool SoftStep::allKept(std::uint32_t block) const {
+bool Rows::allKept(std::uint32_t block) const {
     std::int32_t all = -1;
-    for (const std::int32_t kept : m_blocks[block].kept) all &= kept;
+    for (const std::int32_t kept : blocks[block].kept) all &= kept;
     return all != 0;
 }
 
 /// Rows go on from what the state holds, to the bit: settled impulses are both.
-void SoftStep::settleBlocks(const Plan& plan, const SolverWorld& world,
-                            const ContactKernels& kernels, Range blocks,
-                            std::vector<ContactHit>& hits) {
-    if (blocks.begin == blocks.end) return;
-    if (!kernels.settle(&m_blocks[blocks.begin], blocks.end - blocks.begin)) return;
-    for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
+void Rows::settleContacts(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
+                          Range range, std::vector<ContactHit>& hits) {
+    if (range.begin == range.end) return;
+    if (!kernels.settle(&blocks[range.begin], range.end - range.begin)) return;
+    for (std::uint32_t at = range.begin * blockLanes; at < range.end * blockLanes; ++at) {
         const std::uint32_t place = plan.contactOfLane[at];
-        const ContactBlock& rows = m_blocks[at / blockLanes];
+        const ContactBlock& rows = blocks[at / blockLanes];
         const std::uint32_t lane = at % blockLanes;
         if (place == none || rows.hit[lane] == 0) continue;
         const Contact& contact = world.contacts[place];
@@ -265,17 +267,17 @@ void SoftStep::settleBlocks(const Plan& plan, const SolverWorld& world,
     }
 }
 
-void SoftStep::storeJoints(const SolverWorld& world, Range joints) const {
-    for (std::uint32_t i = joints.begin; i < joints.end; ++i) {
-        world.jointImpulses[m_joints[i].joint] = storedImpulses(m_joints[i]);
+void Rows::storeJoints(const SolverWorld& world, Range range) const {
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        world.jointImpulses[joints[i].joint] = storedImpulses(joints[i]);
     }
 }
 
-void SoftStep::storeRevolutes(const Plan& plan, const SolverWorld& world, Range blocks) const {
-    for (std::uint32_t at = blocks.begin * blockLanes; at < blocks.end * blockLanes; ++at) {
+void Rows::storeRevolutes(const Plan& plan, const SolverWorld& world, Range range) const {
+    for (std::uint32_t at = range.begin * blockLanes; at < range.end * blockLanes; ++at) {
         const std::uint32_t joint = plan.revoluteOfLane[at];
         if (joint == none) continue;
-        world.jointImpulses[joint] = storedImpulses(m_revolutes[at / blockLanes], at % blockLanes);
+        world.jointImpulses[joint] = storedImpulses(revolutes[at / blockLanes], at % blockLanes);
     }
 }
 

@@ -288,10 +288,11 @@ struct WorldInfo {
     float maxImpulse;             ///< N·s, of a player's command
     float maxForce;               ///< N, of a player's command or grab
     std::uint32_t joinedPlayers;  ///< how many players ever joined
-    std::uint32_t reserved;       ///< 0
+    std::uint32_t method;         ///< `Method`
 
     static constexpr std::uint32_t sleep = 1u;
     static constexpr std::uint32_t players = 2u;
+    [[nodiscard]] Method solver() const { return static_cast<Method>(method); }
 };
 template <>
 inline constexpr auto fieldsOf<WorldInfo> = std::to_array<Field>({
@@ -312,7 +313,7 @@ inline constexpr auto fieldsOf<WorldInfo> = std::to_array<Field>({
     {"maxImpulse", FieldType::F32, 64},
     {"maxForce", FieldType::F32, 68},
     {"joinedPlayers", FieldType::U32, 72},
-    {"reserved", FieldType::U32, 76},
+    {"method", FieldType::U32, 76},
 });
 static_assert(fieldsTile<WorldInfo>());
 

@@ -113,7 +113,7 @@ std::string badInfo(const WorldInfo& w) {
     if (w.maxSpawned > caps::maxSpawned) return "world maxSpawned: out of range";
     if (!within(w.maxImpulse, 0, caps::maxPush)) return "world maxImpulse: out of range";
     if (!within(w.maxForce, 0, caps::maxPush)) return "world maxForce: out of range";
-    if (w.reserved != 0) return "world reserved: not zero";
+    if (w.method > static_cast<std::uint32_t>(lastMethod)) return "world method: unknown";
     return {};
 }
 

@@ -82,7 +82,7 @@ void World::Data::contactsToState() const {
         const std::uint32_t later = gathered.recordOfLane[std::min(lane + ahead, lanes - 1)];
         if (later != none) __builtin_prefetch(&state.contacts[later], 1);
         if (gathered.recordOfLane[lane] == none) continue;
-        const ContactImpulses now = acc.solver.impulses(lane);
+        const ContactImpulses now = acc.rows.impulses(lane);
         ContactState& record = state.contacts[gathered.recordOfLane[lane]];
         record.normalImpulse = now.normal;
         record.tangentImpulse = now.tangent;

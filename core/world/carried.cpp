@@ -50,7 +50,7 @@ void Carried::become(const Carried& other, bool related) {
     acc.linksStale = its.linksStale;
     acc.rowsHold = its.rowsHold;
     const std::size_t knownBlocks = std::min(acc.rowStamps.size(), its.rowStamps.size());
-    acc.solver.copyRows(its.solver, [&](std::uint32_t block) {
+    acc.rows.copyRows(its.rows, [&](std::uint32_t block) {
         return block < knownBlocks && same(acc.rowStamps[block], its.rowStamps[block]);
     });
     acc.shapesStamp = its.shapesStamp;

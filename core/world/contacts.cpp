@@ -157,14 +157,14 @@ void World::Data::layOutCandidates(Executor* executor) {
 /// others have had theirs fetched when they got a new one; before it all.
 void World::Data::fetchImpulses(Lanes which, Executor* executor) {
     Accelerators& acc = accelerators;
-    overRange(executor, acc.solver.blockCount(), blockGrain,
+    overRange(executor, acc.rows.blockCount(), blockGrain,
               [&](std::uint32_t begin, std::uint32_t end) {
                   for (std::uint32_t lane = begin * blockLanes; lane < end * blockLanes; ++lane) {
                       const std::uint32_t contact = acc.plan.contactOfLane[lane];
                       if (contact == none) continue;
-                      if (which == Lanes::Kept && !acc.solver.isKept(lane)) continue;
+                      if (which == Lanes::Kept && !acc.rows.isKept(lane)) continue;
                       acc.contactStamps[contact] = stamp;
-                      setImpulses(acc.contacts[contact], acc.solver.impulses(lane));
+                      setImpulses(acc.contacts[contact], acc.rows.impulses(lane));
                   }
               });
 }
@@ -254,42 +254,42 @@ bool Collide::isRenewed(std::uint32_t lane, Findings& mine) const {
     const std::uint32_t place = m_acc.plan.contactOfLane[lane];
     if (place == none) return false;
     if (m_world.anyAsleep) {
-        const ConstraintPlaces bodies = m_acc.solver.bodiesOf(lane);
+        const ConstraintPlaces bodies = m_acc.rows.bodiesOf(lane);
         const std::uint8_t both = activityOf(bodies.a, bodies.b);
         if (!isActive(both)) {
             // It fell asleep; who wakes it looks at the contact alone.
-            setImpulses(m_acc.contacts[place], m_acc.solver.impulses(lane));
+            setImpulses(m_acc.contacts[place], m_acc.rows.impulses(lane));
             m_acc.contactStamps[place] = m_world.stamp;
-            m_acc.solver.dropLane(lane);
+            m_acc.rows.dropLane(lane);
             m_acc.inLanes[place] = 0;
             return false;
         }
-        mine.disturbs |= m_acc.solver.isKept(lane) && isAsleep(both);
+        mine.disturbs |= m_acc.rows.isKept(lane) && isAsleep(both);
     }
-    mine.recycled += m_acc.solver.isKept(lane);
-    return !m_acc.solver.isKept(lane);
+    mine.recycled += m_acc.rows.isKept(lane);
+    return !m_acc.rows.isKept(lane);
 }
 
 void Collide::renew(std::uint32_t lane, Findings& mine) const {
     const std::uint32_t place = m_acc.plan.contactOfLane[lane];
     Contact& contact = m_acc.contacts[place];
     if (contact.pointCount == 0) return;  // it ended with its pair
-    setImpulses(contact, m_acc.solver.impulses(lane));
+    setImpulses(contact, m_acc.rows.impulses(lane));
     mine.fresh.push_back(lane);
     note(place, renewContact(contact, m_in), mine);
 }
 
 void Collide::lookAtRows() {
-    const std::uint32_t blocks = m_acc.solver.blockCount();
+    const std::uint32_t blocks = m_acc.rows.blockCount();
     auto findings = perBlock<Findings>(blocks, blockGrain);
     overBlocks(m_executor, blocks, blockGrain, [&](std::uint32_t begin, std::uint32_t end) {
         Findings& mine = findings[begin / blockGrain];
-        m_acc.solver.check(m_world.state.motions, m_acc.tight, m_simd, {begin, end});
+        m_acc.rows.check(m_world.state.motions, m_acc.tight, m_simd, {begin, end});
         // Contacts lie anywhere: first whom to look at, so that they are on their way.
         std::array<std::uint32_t, blockGrain * blockLanes> renewed{};
         std::size_t count = 0;
         for (std::uint32_t block = begin; block < end; ++block) {
-            if (!m_world.anyAsleep && m_acc.solver.allKept(block)) {
+            if (!m_world.anyAsleep && m_acc.rows.allKept(block)) {
                 mine.recycled += blockLanes;
                 continue;
             }

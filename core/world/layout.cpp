@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bitset>
 
+#include "core/solver/soft_step.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
@@ -83,7 +84,7 @@ StepLayout World::stepLayout() const {
     layout.freeBodies = static_cast<std::uint32_t>(plan.freeBodies.size());
     layout.batchConstraints = m_data->planLimits.batchSize;
     layout.bytesTouched =
-        acc.solver.bytes() + bodies * (sizeof(BodyMotion) + sizeof(BodyInfo)) +
+        acc.rows.bytes() + bodies * (sizeof(BodyMotion) + sizeof(BodyInfo)) +
         acc.tight.size() * (sizeof(Bounds) + sizeof(Vec2) + sizeof(Hull) + sizeof(Bounds)) +
         acc.candidates.size() * (sizeof(Candidate) + sizeof(std::uint8_t)) +
         plan.jointLinks * (sizeof(JointInfo) + sizeof(JointImpulses));

@@ -49,14 +49,14 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
                             accelerators.contacts,
                             accelerators.rowsHold,
                             state.info().gravity,
-                            state.info().stepSeconds,
-                            state.info().substeps};
-    SoftStep& solver = accelerators.solver;
+                            state.info().stepSeconds};
+    Rows& rows = accelerators.rows;
     const Plan& plan = accelerators.plan;
     // Contacts, joints, motions → rows → impulses, hits; times are kept by stage within.
-    solver.solve(plan, world, with.simd, executor, events.hits, timer);
-    if (!accelerators.rowsHold) accelerators.rowStamps.assign(solver.blockCount(), stamp);
-    const Moved moved = solver.finish(plan, world, executor);  // rows → motions
+    solve(rows, plan, world, traitsOf(state.info().solver()), with.simd, executor, events.hits,
+          timer);
+    if (!accelerators.rowsHold) accelerators.rowStamps.assign(rows.blockCount(), stamp);
+    const Moved moved = finish(rows, plan, world, executor);  // rows → motions
     for (const std::uint32_t body : moved.broken) {
         events.quarantined.push_back(state.bodies[body].id);
     }
@@ -172,12 +172,13 @@ void World::Data::updatePlan(Executor* executor) {
             if (moves(body)) awake.push_back(body);
         }
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
-                 static_cast<std::uint32_t>(state.bodies.size()), planLimits);
+                 static_cast<std::uint32_t>(state.bodies.size()), planLimits,
+                 {state.info().substeps, traitsOf(state.info().solver()).colours});
         acc.planStamp = stamp;
     } else {
         for (const std::uint32_t lane : acc.freshLanes) {
             acc.rowStamps[lane / blockLanes] = stamp;
-            acc.solver.writeRow(lane, acc.contacts[plan.contactOfLane[lane]]);
+            acc.rows.writeRow(lane, acc.contacts[plan.contactOfLane[lane]]);
         }
     }
     report.contacts = static_cast<std::uint32_t>(acc.contacts.size() - acc.freeContacts.size());

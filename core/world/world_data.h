@@ -15,7 +15,7 @@
 #include "core/contact/contact.h"
 #include "core/contact/narrow_phase.h"
 #include "core/graph/plan.h"
-#include "core/solver/soft_step.h"
+#include "core/solver/solve.h"
 #include "core/state/roots.h"
 #include "core/state/state.h"
 #include "core/world/world.h"
@@ -62,7 +62,7 @@ struct Accelerators {
     bool linksStale = true;  // contacts, joints or who moves may differ from the plan's
     bool rowsHold = false;   // the solver's contact rows are those of this plan
     std::vector<std::uint32_t> freshLanes;  // lanes whose contact has a new manifold
-    SoftStep solver;
+    Rows rows;
 
     Stamp shapesStamp = 0;
     Stamp broadPhaseStamp = 0;

@@ -253,6 +253,7 @@ void put(schema::Scene::Builder to, const Scene& scene) {
     putPoint(to.getGravity(), scene.gravity);
     to.setStepSeconds(scene.stepSeconds);
     to.setSubsteps(scene.substeps);
+    to.setMethod(static_cast<schema::Method>(scene.method));
     to.setSleep(scene.sleep);
     if (!scene.bodies.empty()) {
         auto bodies = to.initBodies(static_cast<unsigned>(scene.bodies.size()));
@@ -277,6 +278,7 @@ Scene readScene(Reading& in, schema::Scene::Reader from) {
     scene.gravity = in.point("gravity", from.getGravity());
     scene.stepSeconds = in.real("stepSeconds", from.getStepSeconds());
     scene.substeps = from.getSubsteps();
+    scene.method = in.choice("method", from.getMethod(), lastMethod);
     scene.sleep = from.getSleep();
     scene.bodies = readBodies(in, from.getBodies(), caps::maxBodies);
     scene.joints = readJoints(in, from.getJoints(), caps::maxJoints);

@@ -34,6 +34,7 @@ Scene fullScene() {
     scene.gravity = {0.5f, -9.81f};
     scene.stepSeconds = 0.01f;
     scene.substeps = 7;
+    scene.method = Method::Sequential;
     scene.sleep = false;
     BodyDef ground;
     ground.id = 3;
@@ -295,7 +296,7 @@ TEST(SceneFile, BadDocumentsAreRefusedWithTheirPath) {
          "bodies[0].position.x: stands here twice"},
         {R"({"version": 1, "colour": "red"})",
          "colour: no such field; there are version, name, gravity, stepSeconds, substeps, sleep, "
-         "bodies, joints, players, limits, counters"},
+         "bodies, joints, players, limits, counters, method"},
         {withBody(R"("position": {"x": 1, "y": 2, "z": 3})"),
          "bodies[0].position.z: no such field; there are x, y"},
         {withBody(R"("position": {"x": 1})"), "bodies[0].position.y: is missing"},

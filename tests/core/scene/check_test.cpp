@@ -73,6 +73,7 @@ const Case sceneCases[] = {
     {"stepSeconds: must be from 1e-04 to 0.1, is 0", [](Scene& s) { s.stepSeconds = 0.0f; }},
     {"substeps: must be from 1 to 64, is 0", [](Scene& s) { s.substeps = 0; }},
     {"substeps: must be from 1 to 64, is 65", [](Scene& s) { s.substeps = 65; }},
+    {"method: is no method", [](Scene& s) { s.method = static_cast<Method>(200); }},
     {"limits.bodies: must be from 0 to 1000000, is 1000001",
      [](Scene& s) { s.limits.bodies = 1'000'001; }},
     {"limits.commandsPerTick: must be from 1 to 65536, is 0",

@@ -313,7 +313,7 @@ TEST(Snapshot, ThatContradictsItselfIsRefusedByRecordAndField) {
     expect("world maxSpawned", [](WorldState& s) { s.info().maxSpawned = 1u << 20; });
     expect("world maxImpulse", [](WorldState& s) { s.info().maxImpulse = 3.0e38f; });
     expect("world maxForce", [](WorldState& s) { s.info().maxForce = -1.0f; });
-    expect("world reserved", [](WorldState& s) { s.info().reserved = 1; });
+    expect("world method", [](WorldState& s) { s.info().method = 200; });
 }
 
 TEST(Snapshot, OfABodyWhoseCentreIsBeyondTheRimOfItsOriginCanBeRestored) {
