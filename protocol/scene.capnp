@@ -155,7 +155,7 @@ struct Scene {
     y @3 :Float32 = -10;
   }
   stepSeconds @4 :Float32 = 0.016666668;  # s, length of one tick, [0.0001, 0.1]
-  substeps @5 :UInt32 = 4;            # of a tick, [1, 64]
+  substeps @5 :UInt32 = 4;            # of a tick, [1, 64]; 0: planned by need
   sleep @6 :Bool = true;              # whether islands at rest fall asleep
   bodies @7 :List(Body);
   joints @8 :List(Joint);
@@ -173,4 +173,8 @@ struct Scene {
     nextJoint @17 :UInt32 = 1;
   }
   method @18 :Method = softStep;      # how constraints are solved
+  need :group {                       # how far the world may be off at rest; 0: visual
+    penetration @19 :Float32;         # m
+    joint @20 :Float32;               # m
+  }
 }

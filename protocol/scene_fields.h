@@ -149,6 +149,12 @@ void visitFields(Visitor& v, std::type_identity<Counters>) {
     v.field("nextJoint", &Counters::nextJoint);
 }
 
+template <class Visitor>
+void visitFields(Visitor& v, std::type_identity<Need>) {
+    v.field("penetration", &Need::penetration);
+    v.field("joint", &Need::joint);
+}
+
 /// After the version, which every file starts with.
 template <class Visitor>
 void visitFields(Visitor& v, std::type_identity<Scene>) {
@@ -163,6 +169,7 @@ void visitFields(Visitor& v, std::type_identity<Scene>) {
     v.field("limits", &Scene::limits);
     v.field("counters", &Scene::counters);
     v.field("method", &Scene::method);
+    v.field("need", &Scene::need);
 }
 
 }  // namespace huestep::protocol

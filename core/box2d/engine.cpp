@@ -165,7 +165,7 @@ class Box2dEngine final : public Engine {
         motion.rotation = {canonicalZero(q.c), canonicalZero(q.s)};
         motion.velocity = {canonicalZero(velocity.x), canonicalZero(velocity.y)};
         motion.angularVelocity = canonicalZero(body.GetAngularVelocity());
-        motion.rest = asleep ? BodyMotion::asleepBit : 0u;
+        motion.rest = asleep ? BodyMotion::asleepBit : std::uint16_t{0};
         return motion;
     }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/solver/effort.h"
+
 namespace huestep {
 
 namespace {
@@ -13,9 +15,10 @@ struct Builder {
     PlanLimits limits;
     PlanDemand demand;
 
-    std::vector<std::uint8_t> moves;           // by body: whether it is awake
-    std::vector<std::uint32_t> constraintsOf;  // island representative → constraints
-    std::vector<std::uint32_t> batchOf;        // island representative → batch
+    std::vector<std::uint8_t> moves;         // by body: whether it is awake
+    std::vector<std::uint32_t> batchOf;      // island representative → batch
+    std::vector<std::uint8_t> effortOf;      // island representative → level
+    std::vector<std::uint8_t> rampOfIsland;  // island representative → steps
     std::vector<std::uint32_t> batchOfLink;
     std::vector<std::uint32_t> linkOrder;  // links by batch, key order within
     std::vector<std::uint32_t> linkStart;  // batch → first in linkOrder
@@ -42,32 +45,57 @@ void Builder::findAllIslands() {
     findIslands(plan.links, moves, sets);
     plan.islandOf.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) plan.islandOf[i] = sets.find(i);
-    constraintsOf.assign(count, 0);
-    for (const Link& link : plan.links) ++constraintsOf[islandOf(link)];
+    plan.constraintsOf.assign(count, 0);
+    plan.jointed.assign(count, 0);
+    for (std::uint32_t i = 0; i < plan.links.size(); ++i) {
+        const std::uint32_t island = islandOf(plan.links[i]);
+        ++plan.constraintsOf[island];
+        plan.jointed[island] |= i < plan.jointLinks ? 1 : 0;
+    }
+    if (demand.substeps != 0) return;
+    effortOf.assign(count, 0);
+    rampOfIsland.assign(count, 0);
+    for (const std::uint32_t body : plan.awake) {
+        std::uint8_t& island = effortOf[plan.islandOf[body]];
+        island = std::max(island, demand.efforts[body]);
+        std::uint8_t& ramp = rampOfIsland[plan.islandOf[body]];
+        ramp = std::max(ramp, demand.ramps[body]);
+    }
 }
 
-/// Islands in the order of their lowest body fill batches; one that is larger than a batch gets
-/// one to itself. Sizes alone decide.
+/// Islands in the order of their lowest body fill batches of their effort; one that is larger than
+/// a batch gets one to itself. Sizes alone decide.
 void Builder::packBatches() {
-    batchOf.assign(constraintsOf.size(), none);
+    batchOf.assign(plan.constraintsOf.size(), none);
     plan.batches.clear();
     plan.freeBodies.clear();
     plan.islands = 0;
-    std::uint32_t open = none;  // the batch that small islands still go to
+    // By ramp and effort: the batch that small islands still go to.
+    std::array<std::array<std::uint32_t, highestEffort + 1>, highestRamp + 1> openOf{};
+    for (auto& ofRamp : openOf) ofRamp.fill(none);
     for (const std::uint32_t body : plan.awake) {
         if (plan.islandOf[body] != body) continue;
-        const std::uint32_t size = constraintsOf[body];
+        const std::uint32_t size = plan.constraintsOf[body];
         if (size == 0) {
             plan.freeBodies.push_back(body);
             continue;
         }
         ++plan.islands;
         const bool giant = size > limits.batchSize;
+        const std::uint8_t effort = demand.substeps != 0
+                                        ? std::uint8_t{0}
+                                        : std::min(effortOf[body], affordableEffort(size));
+        const std::uint8_t ramp =
+            demand.substeps == 0 && plan.jointed[body] ? rampOfIsland[body] : std::uint8_t{0};
+        std::uint32_t& open = openOf[ramp][effort];
         if (giant || open == none || plan.batches[open].constraints + size > limits.batchSize) {
             const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
-            plan.batches.push_back({});
-            plan.batches.back().giant = giant;
-            plan.batches.back().substeps = demand.substeps;
+            Batch batch;
+            batch.giant = giant;
+            batch.effort = effort;
+            batch.ramp = ramp;
+            batch.substeps = demand.substeps != 0 ? demand.substeps : substepsOf(effort);
+            plan.batches.push_back(batch);
             batchOf[body] = fresh;
             if (!giant) open = fresh;
         } else {
@@ -316,7 +344,7 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
     plan.colours = plan.overflow = plan.inBuckets = 0;
     plan.sharedFrom = limits.sharedFrom;
 
-    Builder builder{plan, limits, demand, {}, {}, {}, {}, {}, {}, {}};
+    Builder builder{plan, limits, demand, {}, {}, {}, {}, {}, {}, {}, {}};
     builder.moves.assign(bodyCount, 0);
     for (const std::uint32_t body : plan.awake) builder.moves[body] = 1;
     builder.findAllIslands();

@@ -43,6 +43,9 @@ struct Batch {
     std::uint32_t firstRevoluteBlock = 0, endRevoluteBlock = 0;
     std::uint32_t constraints = 0;
     std::uint32_t substeps = 1;
+    std::uint8_t effort = 0;  ///< of planned substeps: their level
+    std::uint8_t ramp = 0;    ///< see `rampOf`; of an island without joints: 0
+    bool still = false;       ///< whether its bodies are known to be at that level, and not calm
     bool giant = false;
 };
 
@@ -69,6 +72,8 @@ struct Plan {
     std::vector<ConstraintBodies> revolutePlaces;  ///< likewise → solver places
     std::vector<std::uint32_t> freeBodies;         ///< awake bodies without a constraint
     std::vector<std::uint32_t> islandOf;           ///< body → lowest body of its island
+    std::vector<std::uint32_t> constraintsOf;      ///< lowest body of an island → constraints
+    std::vector<std::uint8_t> jointed;  ///< lowest body of an island → whether it has a joint
     std::vector<std::uint8_t> colourOfLink;
     std::uint32_t islands = 0;
     std::uint32_t colours = 0;     ///< most in any batch; all runs of hubs have two
@@ -91,8 +96,11 @@ struct PlanLimits {
 
 /// What a step asks of its plan.
 struct PlanDemand {
-    std::uint32_t substeps = 4;
-    bool colours = true;  ///< else key order alone: all goes to the overflow
+    std::uint32_t substeps = 4;  ///< of every island; 0: of each the highest effort of its bodies
+    bool colours = true;         ///< else key order alone: all goes to the overflow
+    // By body, where `substeps` is 0.
+    std::span<const std::uint8_t> efforts{};
+    std::span<const std::uint8_t> ramps{};
 };
 
 /// Makes the plan. `links` and `awake` are moved in; bodies that are not awake are read by the

@@ -213,6 +213,41 @@ void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass) {
     }
 }
 
+float strainOf(const JointRow& row) {
+    const JointBodies b{{}, {}, 0, 0, row.mA, row.iA, row.mB, row.iB};
+    const Vec2 p = row.impulses.point;
+    const Vec2 between = row.centers + (row.anchorB - row.anchorA);
+    Vec2 change;
+    switch (row.kind) {
+        case JointKind::Mouse:
+            break;
+        case JointKind::Distance: {
+            const float now = length(between);
+            const Vec2 u = now > 0.0f ? (1.0f / now) * between : Vec2{1.0f, 0.0f};
+            change.x = p.x * inverseOrZero(LinePart{row.anchorA, row.anchorB, u}.mass(b));
+            break;
+        }
+        case JointKind::Prismatic: {
+            const LinePart across{row.anchorA + between, row.anchorB, perpLeft(row.axis)};
+            change.x = p.x * inverseOrZero(across.mass(b));
+            break;
+        }
+        case JointKind::Revolute:
+        case JointKind::Weld:
+            change = PointPart::change(b, row.anchorA, row.anchorB, p);
+            break;
+    }
+    return length(change) * row.allowance;
+}
+
+void scale(JointImpulses& impulses, float by) {
+    impulses.point = by * impulses.point;
+    impulses.spring *= by;
+    impulses.motor *= by;
+    impulses.lower *= by;
+    impulses.upper *= by;
+}
+
 JointImpulses storedImpulses(const JointRow& row) {
     const JointImpulses& l = row.impulses;
     return {{finiteOrZero(l.point.x), finiteOrZero(l.point.y)},

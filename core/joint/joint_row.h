@@ -24,6 +24,8 @@ struct JointRow {
     float motorSpeed = 0, motorMaxEffort = 0, maxForce = 0;
     Softness spring;
     JointImpulses impulses;
+    float allowance = 0;  ///< 1/m, of what its anchors may be off; 0: nobody asks
+    float strain = 0;     ///< see `strainOf`
 };
 
 /// Constants of a pass over joints.
@@ -39,6 +41,13 @@ JointRow prepareJoint(const JointInfo& info, const JointImpulses& impulses, std:
 
 void warmStartJoint(SolverBody* bodies, const JointRow& row);
 void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass);
+
+/// The speed by which the joint's last impulse changes its point rows, times the allowance: s⁻¹.
+/// What it means: core/solver/effort.h. Springs, motors and limits give way as they should.
+float strainOf(const JointRow& row);
+
+/// Impulses of substeps of another length.
+void scale(JointImpulses& impulses, float by);
 
 /// Turns impulses into canonical form for the state; a non-finite one becomes 0.
 JointImpulses storedImpulses(const JointRow& row);

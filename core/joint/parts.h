@@ -44,6 +44,12 @@ inline Vec2 anchorVelocity(const JointBodies& b, Vec2 rA, Vec2 rB) {
 /// Two points coincide: C = (cB + rB) − (cA + rA), two rows solved together.
 ///   K = (mA + mB) 1 + iA [ rAy², −rAx rAy; −rAx rAy, rAx² ] + iB [ likewise ]
 struct PointPart {
+    /// K p: by how much an impulse changes the anchors' relative velocity.
+    static Vec2 change(const JointBodies& b, Vec2 rA, Vec2 rB, Vec2 p) {
+        const float turnA = b.iA * cross(rA, p), turnB = b.iB * cross(rB, p);
+        const float m = b.mA + b.mB;
+        return {m * p.x - (turnA * rA.y + turnB * rB.y), m * p.y + (turnA * rA.x + turnB * rB.x)};
+    }
     static void solve(JointBodies& b, Vec2 rA, Vec2 rB, Vec2 error, const Softness& soft,
                       Vec2& impulse, float maxImpulse = -1.0f) {
         const float m = b.mA + b.mB;

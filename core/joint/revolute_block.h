@@ -31,6 +31,8 @@ struct alignas(64) RevoluteBlock {
     std::int32_t hasMotor[blockLanes];
     std::int32_t hasLimit[blockLanes];
     std::int32_t anyPart;  ///< whether any lane has one of the three
+    Row allowance;         ///< 1/m
+    Row strain;            ///< squared: `strainOf` of each lane, times itself
 };
 
 /// Writes one lane. `row`: as `prepareJoint` made it, with bodies and masses set.
@@ -47,9 +49,14 @@ JointImpulses storedImpulses(const RevoluteBlock& block, std::uint32_t lane);
 using RevoluteKernel = void (*)(SolverBody* bodies, RevoluteBlock* blocks, std::uint32_t count,
                                 const JointPass& pass);
 
+/// Writes how much the joints of `count` whole blocks are strained.
+using RevoluteStrain = void (*)(const SolverBody* bodies, RevoluteBlock* blocks,
+                                std::uint32_t count);
+
 struct RevoluteKernels {
     RevoluteKernel warmStart = nullptr;
     RevoluteKernel solve = nullptr;  ///< with the pass's softness, or neutral in relax
+    RevoluteStrain strain = nullptr;
 };
 
 /// Kernels of a width that is available; `Auto` gives the widest. All give the same bits.

@@ -166,10 +166,36 @@ HUESTEP_INLINE void solveLanes(SolverBody* bodies, RevoluteBlock& block, int lan
     pair.store(bodies, block, lane);
 }
 
+/// `strainOf`, squared.
+template <int W>
+HUESTEP_INLINE void strainLanes(const SolverBody* bodies, RevoluteBlock& block, int lane) {
+    const PairLanes<W> pair(bodies, block, lane);
+    const Anchors<W> r = anchorsOf<W>(block, lane);
+    const LaneF<W> px = loadLanes<W>(block.impulseX + lane);
+    const LaneF<W> py = loadLanes<W>(block.impulseY + lane);
+    const LaneF<W> turnA = pair.inverseInertiaA * (r.ax * py - r.ay * px);
+    const LaneF<W> turnB = pair.inverseInertiaB * (r.bx * py - r.by * px);
+    const LaneF<W> m = pair.a.inverseMass + pair.b.inverseMass;
+    const LaneF<W> x = m * px - (turnA * r.ay + turnB * r.by);
+    const LaneF<W> y = m * py + (turnA * r.ax + turnB * r.bx);
+    const LaneF<W> allowance = loadLanes<W>(block.allowance + lane);
+    storeLanes<W>(block.strain + lane, (x * x + y * y) * (allowance * allowance));
+}
+
+#define HUESTEP_STRAIN(W, attributes)                                          \
+    attributes void strain##W(const SolverBody* bodies, RevoluteBlock* blocks, \
+                              std::uint32_t count) {                           \
+        for (std::uint32_t i = 0; i < count; ++i) {                            \
+            for (int lane = 0; lane < blockLanes; lane += W) {                 \
+                strainLanes<W>(bodies, blocks[i], lane);                       \
+            }                                                                  \
+        }                                                                      \
+    }
 #define HUESTEP_KERNELS(W, attributes)                               \
+    HUESTEP_STRAIN(W, attributes)                                    \
     HUESTEP_PASS(warmStart, RevoluteBlock, JointPass, W, attributes) \
     HUESTEP_PASS(solve, RevoluteBlock, JointPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes) RevoluteKernels{warmStart##W, solve##W},
+#define HUESTEP_ENTRY(W, attributes) RevoluteKernels{warmStart##W, solve##W, strain##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 
@@ -207,6 +233,7 @@ void setRevoluteLane(RevoluteBlock& block, std::uint32_t lane, const JointRow& r
     block.motorMaxEffort[lane] = row.motorMaxEffort;
     block.lower[lane] = row.lower;
     block.upper[lane] = row.upper;
+    block.allowance[lane] = row.allowance;
 }
 
 void findParts(RevoluteBlock& block) {

@@ -98,6 +98,7 @@ class Checker {
     bool spring(const Place& place, const SpringDef& spring);
     bool limit(const Place& place, const JointDef& joint);
     bool players(const Place& place, const PlayerDef& players);
+    bool need(const Place& place, const Scene& scene);
     bool limits(const Scene& scene);
     template <class Def>
     bool ids(const std::vector<Def>& defs, std::string_view list);
@@ -375,6 +376,14 @@ bool Checker::ids(const std::vector<Def>& defs, std::string_view list) {
                                     "[" + text(twice->second) + "]");
 }
 
+bool Checker::need(const Place& place, const Scene& scene) {
+    const auto fits = [&](std::string_view name, float tolerance) {
+        return tolerance == 0.0f ||
+               within(place.at(name), tolerance, caps::minTolerance, caps::maxTolerance);
+    };
+    return fits("penetration", scene.need.penetration) && fits("joint", scene.need.joint);
+}
+
 bool Checker::scene(const Scene& scene) {
     const Place root;
     if (scene.name.size() > caps::maxSceneName) {
@@ -382,7 +391,8 @@ bool Checker::scene(const Scene& scene) {
     }
     if (!within(root.at("gravity"), scene.gravity, caps::maxGravity) ||
         !within(root.at("stepSeconds"), scene.stepSeconds, caps::minStepSeconds, 0.1f) ||
-        !within(root.at("substeps"), scene.substeps, 1u, 64u) || !limits(scene)) {
+        !within(root.at("substeps"), scene.substeps, 0u, 64u) || !need(root.at("need"), scene) ||
+        !limits(scene)) {
         return false;
     }
     if (scene.method > lastMethod) return fail(root.at("method"), "is no method");

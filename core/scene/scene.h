@@ -213,11 +213,22 @@ enum class Method : std::uint8_t {
 };
 inline constexpr Method lastMethod = Method::Sequential;
 
+/// How far a world may be off at rest, where its substeps are planned: m, 0 or [1e-6, 1]. 0 is
+/// *visual*: 5 mm, or 1 % of the smaller body if that is more.
+struct Need {
+    float penetration = 0.0f;
+    float joint = 0.0f;
+    friend bool operator==(const Need&, const Need&) = default;
+};
+
 struct Scene {
     std::string name;                  ///< for people, ≤ 256 bytes; no part of a world's state
     Vec2 gravity{0.0f, -10.0f};        ///< m/s², ±10,000
     float stepSeconds = 1.0f / 60.0f;  ///< s, length of one tick, [0.0001, 0.1]
-    std::uint32_t substeps = 4;        ///< of a tick, [1, 64]; of methods without: iterations
+    /// Of a tick, [1, 64]; of methods without: iterations. 0: planned, for each island by `need`;
+    /// of methods other than the product's 4.
+    std::uint32_t substeps = 0;
+    Need need;
     Method method = Method::SoftStep;
     bool sleep = true;                 ///< whether islands at rest fall asleep
     std::vector<BodyDef> bodies;
@@ -248,6 +259,8 @@ inline constexpr std::uint32_t maxPlayers = 65'536;
 inline constexpr float maxPush = 1.0e9f;             ///< N·s and N, of a player's command
 inline constexpr std::uint32_t maxSpawned = 1024;    ///< bodies, of a player at a time
 inline constexpr float minStepSeconds = 1.0e-4f;     ///< s
+inline constexpr float minTolerance = 1.0e-6f;       ///< m, of a need that is not visual
+inline constexpr float maxTolerance = 1.0f;          ///< m
 inline constexpr float rotationTolerance = 1.0e-3f;  ///< of c² + s²; the world normalises
 inline constexpr std::uint32_t maxId = 0x7fffffffu;  ///< of definitions and counters at the start
 inline constexpr std::uint32_t maxBodies = 1'000'000;

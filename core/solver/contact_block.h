@@ -69,7 +69,19 @@ struct alignas(64) ContactBlock : ContactFields<LaneRow> {
     std::int32_t mayHit;            ///< whether any lane approaches fast enough to hit or bounce
     /// Of a hub's block: by how many lanes the hub's mass was divided last; 0: rows are as made.
     std::uint32_t shares;
+    // Where substeps are planned.
+    LaneRow allowance;  ///< 1/m, of what a lane may overlap; 0: padding
+    LaneRow strain;     ///< s⁻¹: the speed by which its last impulses change it, times that
 };
+
+/// Impulses of one lane for substeps of another length.
+inline void scaleLane(ContactBlock& rows, std::uint32_t lane, float by) {
+    for (ContactPointRows& p : rows.points) {
+        p.normalImpulse[lane] *= by;
+        p.tangentImpulse[lane] *= by;
+    }
+    rows.rollingImpulse[lane] *= by;
+}
 
 /// Makes the impulses of one block those of another.
 inline void copyImpulses(const ContactBlock& from, ContactBlock& to) {
@@ -132,6 +144,9 @@ using ContactCheck = void (*)(const BodyMotion* motions, const Bounds* bounds, C
 /// hits. Returns whether there are any.
 using ContactSettle = bool (*)(ContactBlock* blocks, std::uint32_t count);
 
+/// Writes how much the lanes of `count` whole blocks are strained (core/solver/effort.h).
+using ContactStrain = void (*)(ContactBlock* blocks, std::uint32_t count);
+
 /// How many of a block's lanes have a row that acts or may: it pushes already, or its gap closes
 /// within the substep. `bodies` holds what the lanes' places say.
 using ContactCount = std::uint32_t (*)(const SolverBody* bodies, const ContactBlock& block,
@@ -154,6 +169,7 @@ struct ContactKernels {
     ContactSettle settle = nullptr;
     ContactCount countActive = nullptr;
     ContactShare shareHub = nullptr;
+    ContactStrain strain = nullptr;
 };
 
 }  // namespace huestep

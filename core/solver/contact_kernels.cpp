@@ -358,6 +358,20 @@ HUESTEP_INLINE void settleLanes(ContactBlock& block, int lane) {
     storeMask<W>(block.hit + lane, hit);
 }
 
+template <int W>
+HUESTEP_INLINE void strainLanes(ContactBlock& block, int lane) {
+    const LaneF<W> zero = splat<W>(0.0f);
+    LaneF<W> most = zero;
+    for (const ContactPointRows& p : block.points) {
+        const LaneF<W> mass = loadLanes<W>(p.normalMass + lane);
+        const auto there = mass > zero;
+        const LaneF<W> change =
+            loadLanes<W>(p.normalImpulse + lane) / selectLanes(there, mass, splat<W>(1.0f));
+        most = maxLanes(most, selectLanes(there, change, zero));
+    }
+    storeLanes<W>(block.strain + lane, most * loadLanes<W>(block.allowance + lane));
+}
+
 HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
     std::int32_t all = 0;
     for (const std::int32_t m : mask) all |= m;
@@ -382,6 +396,13 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
             hits = hits || (blocks[i].mayHit != 0 && anySet(blocks[i].hit));  \
         }                                                                     \
         return hits;                                                          \
+    }                                                                         \
+    attributes void strain##W(ContactBlock* blocks, std::uint32_t count) {    \
+        for (std::uint32_t i = 0; i < count; ++i) {                           \
+            for (int lane = 0; lane < blockLanes; lane += W) {                \
+                strainLanes<W>(blocks[i], lane);                              \
+            }                                                                 \
+        }                                                                     \
     }
 #define HUESTEP_REFRESH(W, attributes)                                            \
     attributes void refresh##W(const SolverBody* bodies, const SolverPose* poses, \
@@ -419,9 +440,10 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
     HUESTEP_PASS(solve, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes)                                                  \
-    ContactKernels{check##W, refresh##W,   warmStart##W, warmStartAgain##W, solve##W, \
-                   relax##W, restitute##W, settle##W,    countActive##W,    shareHub##W},
+#define HUESTEP_ENTRY(W, attributes)                                                     \
+    ContactKernels{                                                                      \
+        check##W,     refresh##W, warmStart##W,   warmStartAgain##W, solve##W, relax##W, \
+        restitute##W, settle##W,  countActive##W, shareHub##W,       strain##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 

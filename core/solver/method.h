@@ -48,6 +48,7 @@ struct BatchTask {
     Rows& rows;
     float stepSeconds;         ///< s
     std::uint32_t substeps;    ///< n; of methods without substeps: iterations
+    float jointRamp;           ///< share of their frequency that joints have: (0, 1]
     ContactFeatures features;  ///< of all contact rows
     const ContactKernels& contacts;
     const RevoluteKernels& revolutes;

@@ -8,6 +8,7 @@
 #include "core/math/finite.h"
 #include "core/solver/body_lanes.h"
 #include "core/solver/contact_kernels.h"
+#include "core/solver/effort.h"
 
 namespace huestep {
 
@@ -59,6 +60,18 @@ BodyPlace warmPlace(const Plan& plan, BodyPlace place) {
     return place < 0 || plan.hasJoint[static_cast<std::size_t>(place)] != 0 ? place : ~place;
 }
 
+/// What impulses of substeps of one level are in those of another: exact, a power of two.
+float impulseScale(std::uint8_t from, std::uint8_t to) {
+    return static_cast<float>(substepsOf(from)) / static_cast<float>(substepsOf(to));
+}
+
+/// Of two bodies' reaches the smaller, of those that there are: m.
+float smallerReach(const SolverWorld& world, std::size_t a, std::size_t b) {
+    const float ofA = world.reach[a], ofB = world.reach[b];
+    if (!(ofA > 0.0f)) return ofB;
+    return ofB > 0.0f ? minOf(ofA, ofB) : ofA;
+}
+
 /// One lane of it.
 template <template <class> class Fields>
 void writeLane(const Fields<float>& record, Fields<LaneRow>& rows, std::uint32_t lane) {
@@ -99,6 +112,7 @@ void Rows::prepareBodies(const Plan& plan, const SolverWorld& world, float h, Ra
         poses[place] = {motion.position.x, motion.position.y, motion.rotation.c, motion.rotation.s};
         BodySource source;
         source.inverseInertia = info.inverseInertia;
+        source.effort = motion.effort;
         if (info.dynamic()) {
             source.acceleration = info.gravityScale * world.gravity;
             if (!world.forces.empty()) {
@@ -118,7 +132,13 @@ void Rows::prepareBodies(const Plan& plan, const SolverWorld& world, float h, Ra
     }
 }
 
-JointRow Rows::jointRow(const SolverWorld& world, std::uint32_t joint,
+/// The level that a constraint's impulses are of: that of whichever body moves; both had the same
+/// when they were solved.
+std::uint8_t Rows::effortOf(const ConstraintBodies& places) const {
+    return sources[static_cast<std::size_t>(places.b >= 0 ? places.b : readPlace(places.a))].effort;
+}
+
+JointRow Rows::jointRow(const SolverWorld& world, const Batch& batch, std::uint32_t joint,
                         const ConstraintBodies& places, float h) const {
     const JointInfo& info = world.joints[joint];
     const ConstraintPlaces& of = world.jointBodies[joint];
@@ -132,16 +152,24 @@ JointRow Rows::jointRow(const SolverWorld& world, std::uint32_t joint,
     row.iA = sources[a].inverseInertia;
     row.mB = bodies[b].inverseMass;
     row.iB = sources[b].inverseInertia;
+    if (world.planned) {
+        scale(row.impulses, impulseScale(effortOf({row.bodyA, row.bodyB}), batch.effort));
+        row.allowance =
+            1.0f / (world.need.joint > 0.0f ? world.need.joint
+                                            : visualTolerance(smallerReach(world, of.a, of.b)));
+    }
     return row;
 }
 
-void Rows::prepareJoints(const Plan& plan, const SolverWorld& world, float h, Range range) {
+void Rows::prepareJoints(const Plan& plan, const SolverWorld& world, const Batch& batch, float h,
+                         Range range) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        joints[i] = jointRow(world, plan.jointOrder[i], plan.jointPlaces[i], h);
+        joints[i] = jointRow(world, batch, plan.jointOrder[i], plan.jointPlaces[i], h);
     }
 }
 
-void Rows::prepareRevolutes(const Plan& plan, const SolverWorld& world, float h, Range range) {
+void Rows::prepareRevolutes(const Plan& plan, const SolverWorld& world, const Batch& batch, float h,
+                            Range range) {
     for (std::uint32_t index = range.begin; index < range.end; ++index) {
         RevoluteBlock& block = revolutes[index];
         for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
@@ -150,7 +178,8 @@ void Rows::prepareRevolutes(const Plan& plan, const SolverWorld& world, float h,
             if (joint == none) {
                 clearRevoluteLane(block, lane);
             } else {
-                setRevoluteLane(block, lane, jointRow(world, joint, plan.revolutePlaces[at], h));
+                setRevoluteLane(block, lane,
+                                jointRow(world, batch, joint, plan.revolutePlaces[at], h));
             }
         }
         findParts(block);
@@ -164,13 +193,14 @@ void Rows::prefetchContacts(const Plan& plan, const SolverWorld& world, std::uin
     }
 }
 
-void Rows::prepareContacts(const Plan& plan, const SolverWorld& world,
+void Rows::prepareContacts(const Plan& plan, const SolverWorld& world, const Batch& batch,
                            const ContactKernels& kernels, Range range, ContactFeatures& features) {
     for (std::uint32_t block = range.begin; block < range.end; ++block) {
         if (!world.rowsHold) {
             // Contacts lie anywhere: those of the next block are on their way while this is made.
             if (block + 1 < range.end) prefetchContacts(plan, world, block + 1);
             makeBlock(plan, world, block);
+            if (world.planned) fitToEffort(plan, world, batch, block);
         }
         blocks[block].shares = 0;
         features = features | blockFeatures[block];
@@ -215,6 +245,28 @@ void Rows::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t b
     blockFeatures[block] = features;
 }
 
+/// Brings impulses of another level to this one, and says how far each lane may be off.
+void Rows::fitToEffort(const Plan& plan, const SolverWorld& world, const Batch& batch,
+                       std::uint32_t block) {
+    ContactBlock& rows = blocks[block];
+    for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
+        const std::uint32_t at = block * blockLanes + lane;
+        rows.allowance[lane] = 0.0f;
+        if (plan.contactOfLane[at] == none) continue;
+        const ConstraintBodies places{rows.bodyA[lane], rows.bodyB[lane]};
+        const std::uint8_t made = effortOf(places);
+        if (made != batch.effort) scaleLane(rows, lane, impulseScale(made, batch.effort));
+        const auto bodyA = static_cast<std::size_t>(rows.motionA[lane]);
+        const auto bodyB = static_cast<std::size_t>(rows.motionB[lane]);
+        const float most = world.need.penetration > 0.0f
+                               ? world.need.penetration
+                               : visualTolerance(smallerReach(world, bodyA, bodyB));
+        // Rows against fixed bodies have twice the frequency.
+        const bool fixed = places.a < 0 || places.b < 0;
+        rows.allowance[lane] = (fixed ? 0.25f : 1.0f) / most;
+    }
+}
+
 void Rows::writeRow(std::uint32_t lane, const Contact& contact) {
     ContactBlock& rows = blocks[lane / blockLanes];
     writeLane<ContactFields>(contact.row, rows, lane % blockLanes);
@@ -244,6 +296,7 @@ bool Rows::allKept(std::uint32_t block) const {
 void Rows::settleContacts(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
                           Range range, std::vector<ContactHit>& hits) {
     if (range.begin == range.end) return;
+    if (world.planned) kernels.strain(&blocks[range.begin], range.end - range.begin);
     if (!kernels.settle(&blocks[range.begin], range.end - range.begin)) return;
     for (std::uint32_t at = range.begin * blockLanes; at < range.end * blockLanes; ++at) {
         const std::uint32_t place = plan.contactOfLane[at];
@@ -267,13 +320,18 @@ void Rows::settleContacts(const Plan& plan, const SolverWorld& world, const Cont
     }
 }
 
-void Rows::storeJoints(const SolverWorld& world, Range range) const {
+void Rows::storeJoints(const SolverWorld& world, Range range) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        if (world.planned) joints[i].strain = strainOf(joints[i]);
         world.jointImpulses[joints[i].joint] = storedImpulses(joints[i]);
     }
 }
 
-void Rows::storeRevolutes(const Plan& plan, const SolverWorld& world, Range range) const {
+void Rows::storeRevolutes(const Plan& plan, const SolverWorld& world,
+                          const RevoluteKernels& kernels, Range range) {
+    if (world.planned && range.begin < range.end) {
+        kernels.strain(bodies.data(), &revolutes[range.begin], range.end - range.begin);
+    }
     for (std::uint32_t at = range.begin * blockLanes; at < range.end * blockLanes; ++at) {
         const std::uint32_t joint = plan.revoluteOfLane[at];
         if (joint == none) continue;

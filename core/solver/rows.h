@@ -26,6 +26,7 @@ struct BodySource {
     float linearFactor = 1, angularFactor = 1;  ///< of damping, a substep
     /// Whether the impulses of one substep start the next one by what they did to its velocity.
     bool carries = false;
+    std::uint8_t effort = 0;  ///< that its impulses are of, where substeps are planned
     Vec2 lag;  ///< m/s, by how much the mean velocity of a substep is behind that at its end
 };
 
@@ -59,16 +60,19 @@ class Rows {
     void fit(const Plan& plan);
     /// From the world, for substeps of `h` seconds. `features` gets what the blocks use.
     void prepareBodies(const Plan& plan, const SolverWorld& world, float h, Range places);
-    void prepareJoints(const Plan& plan, const SolverWorld& world, float h, Range range);
-    void prepareRevolutes(const Plan& plan, const SolverWorld& world, float h, Range range);
-    void prepareContacts(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
-                         Range range, ContactFeatures& features);
+    void prepareJoints(const Plan& plan, const SolverWorld& world, const Batch& batch, float h,
+                       Range range);
+    void prepareRevolutes(const Plan& plan, const SolverWorld& world, const Batch& batch, float h,
+                          Range range);
+    void prepareContacts(const Plan& plan, const SolverWorld& world, const Batch& batch,
+                         const ContactKernels& kernels, Range range, ContactFeatures& features);
     /// Back into the world. Contacts' impulses stay in their rows, fit for state; `hits` gets
-    /// contacts that met hard.
+    /// contacts that met hard. Where substeps are planned, rows also get their strain.
     void settleContacts(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
                         Range range, std::vector<ContactHit>& hits);
-    void storeJoints(const SolverWorld& world, Range range) const;
-    void storeRevolutes(const Plan& plan, const SolverWorld& world, Range range) const;
+    void storeJoints(const SolverWorld& world, Range range);
+    void storeRevolutes(const Plan& plan, const SolverWorld& world, const RevoluteKernels& kernels,
+                        Range range);
 
     [[nodiscard]] std::uint32_t blockCount() const {
         return static_cast<std::uint32_t>(blocks.size());
@@ -119,8 +123,12 @@ class Rows {
  private:
     static void prefetchContacts(const Plan& plan, const SolverWorld& world, std::uint32_t block);
     void makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t block);
-    [[nodiscard]] JointRow jointRow(const SolverWorld& world, std::uint32_t joint,
-                                    const ConstraintBodies& places, float h) const;
+    void fitToEffort(const Plan& plan, const SolverWorld& world, const Batch& batch,
+                     std::uint32_t block);
+    [[nodiscard]] JointRow jointRow(const SolverWorld& world, const Batch& batch,
+                                    std::uint32_t joint, const ConstraintBodies& places,
+                                    float h) const;
+    [[nodiscard]] std::uint8_t effortOf(const ConstraintBodies& places) const;
 };
 
 }  // namespace huestep

@@ -6,16 +6,14 @@
 #include "core/math/lanes.h"
 #include "core/math/trig.h"
 #include "core/solver/contact_kernels.h"
+#include "core/solver/effort.h"
 
 namespace huestep {
 
 namespace {
 
-// Frequencies follow the substep; at n = 4 and 60 Hz they are the 30 and 60 Hz that the field has
-// settled on (physics page, 2 and "Starting point"). Damping of joints by measurement: with 2 a
-// pendulum loses 0.33 % of its energy in 10 s, with 1 it loses 0.19 %.
-constexpr float contactFrequency = 0.125f;  // of the substep rate
-constexpr float jointFrequency = 0.25f;
+// Damping of joints by measurement: with 2 a pendulum loses 0.33 % of its energy in 10 s, with 1 it
+// loses 0.19 %.
 constexpr float contactDamping = 10.0f;
 constexpr float jointDamping = 1.0f;
 constexpr float pushSpeed = 3.0f;  // m/s
@@ -68,16 +66,17 @@ SoftStep::SoftStep(const BatchTask& task, const Team& team)
       m_team(team),
       m_h(task.stepSeconds / static_cast<float>(task.substeps)) {
     const float rate = 1.0f / m_h;
-    m_moving.soft = softness(contactFrequency * rate, contactDamping, m_h);
+    const RowFrequency frequency = rowFrequency(task.substeps);
+    m_moving.soft = softness(frequency.contact * rate, contactDamping, m_h);
     m_moving.inverseH = rate;
     m_moving.pushSpeed = pushSpeed;
     m_moving.features = task.features;
     m_fixed = m_moving;
-    m_fixed.soft = softness(2.0f * contactFrequency * rate, contactDamping, m_h);
+    m_fixed.soft = softness(2.0f * frequency.contact * rate, contactDamping, m_h);
     m_relaxed.h = m_h;
     m_relaxed.inverseH = rate;
     m_biased = m_relaxed;
-    m_biased.soft = softness(jointFrequency * rate, jointDamping, m_h);
+    m_biased.soft = softness(task.jointRamp * frequency.joint * rate, jointDamping, m_h);
 }
 
 /// A hub's contacts, bucket by bucket: each lane works on a copy of the hub, and the mean of the

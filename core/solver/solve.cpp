@@ -4,6 +4,7 @@
 
 #include "core/parallel/over_range.h"
 #include "core/solver/contact_kernels.h"
+#include "core/solver/effort.h"
 
 namespace huestep {
 
@@ -30,6 +31,7 @@ struct Job {
                 rows,
                 world.stepSeconds,
                 batch.substeps,
+                rampShare(batch.ramp),
                 features,
                 contactKernels(simd),
                 revoluteKernels(simd)};
@@ -49,17 +51,17 @@ void solveGiant(const Job& job, const Batch& batch, Executor* executor,
         job.rows.prepareBodies(job.plan, job.world, h, range);
     });
     over(batch.firstJoint, batch.endJoint, jointGrain, [&](Rows::Range range, std::uint32_t) {
-        job.rows.prepareJoints(job.plan, job.world, h, range);
+        job.rows.prepareJoints(job.plan, job.world, batch, h, range);
     });
     over(batch.firstRevoluteBlock, batch.endRevoluteBlock, blockGrain,
          [&](Rows::Range range, std::uint32_t) {
-             job.rows.prepareRevolutes(job.plan, job.world, h, range);
+             job.rows.prepareRevolutes(job.plan, job.world, batch, h, range);
          });
     const std::uint32_t blocks = batch.endBlock - batch.firstBlock;
     const ContactKernels& kernels = contactKernels(job.simd);
     auto features = perBlock<ContactFeatures>(blocks, blockGrain);
     over(batch.firstBlock, batch.endBlock, blockGrain, [&](Rows::Range range, std::uint32_t index) {
-        job.rows.prepareContacts(job.plan, job.world, kernels, range, features[index]);
+        job.rows.prepareContacts(job.plan, job.world, batch, kernels, range, features[index]);
     });
     ContactFeatures all;
     for (const ContactFeatures& f : features) all = all | f;
@@ -85,7 +87,7 @@ void solveGiant(const Job& job, const Batch& batch, Executor* executor,
          [&](Rows::Range range, std::uint32_t) { job.rows.storeJoints(job.world, range); });
     over(batch.firstRevoluteBlock, batch.endRevoluteBlock, blockGrain,
          [&](Rows::Range range, std::uint32_t) {
-             job.rows.storeRevolutes(job.plan, job.world, range);
+             job.rows.storeRevolutes(job.plan, job.world, revoluteKernels(job.simd), range);
          });
     timer.done(Stage::Store);
 }
@@ -100,13 +102,13 @@ void solveWhole(const Job& job, const Batch& batch, std::vector<ContactHit>& hit
     const Rows::Range revolutes{batch.firstRevoluteBlock, batch.endRevoluteBlock};
     ContactFeatures features;
     rows.prepareBodies(job.plan, job.world, h, {batch.firstPlace, batch.endCopy});
-    rows.prepareJoints(job.plan, job.world, h, joints);
-    rows.prepareRevolutes(job.plan, job.world, h, revolutes);
-    rows.prepareContacts(job.plan, job.world, kernels, blocks, features);
+    rows.prepareJoints(job.plan, job.world, batch, h, joints);
+    rows.prepareRevolutes(job.plan, job.world, batch, h, revolutes);
+    rows.prepareContacts(job.plan, job.world, batch, kernels, blocks, features);
     job.method.solve(job.taskOf(batch, features), {});
     rows.settleContacts(job.plan, job.world, kernels, blocks, hits);
     rows.storeJoints(job.world, joints);
-    rows.storeRevolutes(job.plan, job.world, revolutes);
+    rows.storeRevolutes(job.plan, job.world, revoluteKernels(job.simd), revolutes);
 }
 
 }  // namespace

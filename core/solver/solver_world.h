@@ -56,6 +56,10 @@ struct SolverWorld {
     bool rowsHold = false;  ///< contact rows are those of the last solve, which had this very plan
     Vec2 gravity;
     float stepSeconds = 0;
+    /// Whether substeps follow need: rows then say how much they are strained.
+    bool planned = false;
+    Need need;
+    std::span<const float> reach;  ///< by body, m: farthest point of a shape from the centre
 };
 
 }  // namespace huestep

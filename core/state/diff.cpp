@@ -29,6 +29,15 @@ std::string valueText(const std::byte* at, FieldType type) {
         case FieldType::U64:
             end = std::to_chars(text, text + sizeof text, read(std::uint64_t{0}));
             break;
+        case FieldType::U16:
+            end = std::to_chars(text, text + sizeof text, read(std::uint16_t{0}));
+            break;
+        case FieldType::U8:
+            end = std::to_chars(text, text + sizeof text, read(std::uint8_t{0}));
+            break;
+        case FieldType::I8:
+            end = std::to_chars(text, text + sizeof text, int{read(std::int8_t{0})});
+            break;
     }
     return {text, end.ptr};
 }

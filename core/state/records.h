@@ -21,10 +21,20 @@ namespace huestep {
 
 static_assert(std::endian::native == std::endian::little, "state bytes are little-endian");
 
-enum class FieldType : std::uint8_t { F32, U32, I32, U64 };
+enum class FieldType : std::uint8_t { F32, U32, I32, U64, U16, U8, I8 };
 
 constexpr std::uint32_t sizeOf(FieldType type) {
-    return type == FieldType::U64 ? 8u : 4u;
+    switch (type) {
+        case FieldType::U64:
+            return 8;
+        case FieldType::U16:
+            return 2;
+        case FieldType::U8:
+        case FieldType::I8:
+            return 1;
+        default:
+            return 4;
+    }
 }
 
 /// A run of `count` values of one type in a record; the name is for people.
@@ -55,9 +65,11 @@ struct BodyMotion {
     Rotation rotation;      ///< unit vector
     Vec2 velocity;          ///< m/s, of the centre of mass
     float angularVelocity;  ///< rad/s
-    std::uint32_t rest;     ///< quiet ticks so far; `asleepBit` set while asleep
+    std::uint16_t rest;     ///< quiet ticks so far; `asleepBit` set while asleep
+    std::uint8_t effort;    ///< level that the next step takes (core/solver/effort.h)
+    std::int8_t calm;       ///< steps for which a lower level would have done; < 0: a higher one
 
-    static constexpr std::uint32_t asleepBit = 0x80000000u;
+    static constexpr std::uint16_t asleepBit = 0x8000u;
     [[nodiscard]] bool asleep() const { return (rest & asleepBit) != 0; }
     [[nodiscard]] Pose pose() const { return {position, rotation}; }
 };
@@ -70,7 +82,9 @@ inline constexpr auto fieldsOf<BodyMotion> = std::to_array<Field>({
     {"velocity.x", FieldType::F32, 16},
     {"velocity.y", FieldType::F32, 20},
     {"angularVelocity", FieldType::F32, 24},
-    {"rest", FieldType::U32, 28},
+    {"rest", FieldType::U16, 28},
+    {"effort", FieldType::U8, 30},
+    {"calm", FieldType::I8, 31},
 });
 static_assert(fieldsTile<BodyMotion>());
 
@@ -275,10 +289,10 @@ struct WorldInfo {
     std::uint32_t nextBody;
     std::uint32_t nextShape;
     std::uint32_t nextJoint;
-    std::uint32_t flags;  ///< `sleep`, `players`
-    Vec2 gravity;         ///< m/s²
-    float stepSeconds;    ///< s
-    std::uint32_t substeps;
+    std::uint32_t flags;     ///< `sleep`, `players`
+    Vec2 gravity;            ///< m/s²
+    float stepSeconds;       ///< s
+    std::uint32_t substeps;  ///< 0: planned
     std::uint32_t maxBodies;
     std::uint32_t maxShapes;
     std::uint32_t maxJoints;
@@ -289,10 +303,14 @@ struct WorldInfo {
     float maxForce;               ///< N, of a player's command or grab
     std::uint32_t joinedPlayers;  ///< how many players ever joined
     std::uint32_t method;         ///< `Method`
+    float penetrationNeed;        ///< m; 0: visual
+    float jointNeed;              ///< m; 0: visual
 
     static constexpr std::uint32_t sleep = 1u;
     static constexpr std::uint32_t players = 2u;
     [[nodiscard]] Method solver() const { return static_cast<Method>(method); }
+    /// Whether each island gets the substeps that it needs. Only the product's method plans.
+    [[nodiscard]] bool planned() const { return substeps == 0 && solver() == Method::SoftStep; }
 };
 template <>
 inline constexpr auto fieldsOf<WorldInfo> = std::to_array<Field>({
@@ -314,6 +332,8 @@ inline constexpr auto fieldsOf<WorldInfo> = std::to_array<Field>({
     {"maxForce", FieldType::F32, 68},
     {"joinedPlayers", FieldType::U32, 72},
     {"method", FieldType::U32, 76},
+    {"penetrationNeed", FieldType::F32, 80},
+    {"jointNeed", FieldType::F32, 84},
 });
 static_assert(fieldsTile<WorldInfo>());
 

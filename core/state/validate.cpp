@@ -10,6 +10,7 @@
 
 #include "core/collision/hull.h"
 #include "core/math/finite.h"
+#include "core/solver/effort.h"
 
 namespace huestep {
 
@@ -98,7 +99,12 @@ std::string badInfo(const WorldInfo& w) {
     if (!within(w.stepSeconds, caps::minStepSeconds, 0.1f)) {
         return "world stepSeconds: out of range";
     }
-    if (w.substeps < 1 || w.substeps > 64) return "world substeps: out of range";
+    if (w.substeps > 64) return "world substeps: out of range";
+    const auto need = [](float tolerance) {
+        return tolerance == 0.0f || within(tolerance, caps::minTolerance, caps::maxTolerance);
+    };
+    if (!need(w.penetrationNeed)) return "world penetrationNeed: out of range";
+    if (!need(w.jointNeed)) return "world jointNeed: out of range";
     if (w.nextBody == 0 || w.nextShape == 0 || w.nextJoint == 0) return "world counters: zero";
     if (w.flags > (WorldInfo::sleep | WorldInfo::players)) return "world flags: unknown bits";
     if (!within(w.gravity, caps::maxGravity)) return "world gravity: out of range";
@@ -247,6 +253,8 @@ std::string faultOf(const BodyMotion& m) {
     if (!within(m.velocity.x, -maxSpeed, maxSpeed)) return "velocity.x: out of range";
     if (!within(m.velocity.y, -maxSpeed, maxSpeed)) return "velocity.y: out of range";
     if (!within(m.angularVelocity, -maxSpeed, maxSpeed)) return "angularVelocity: out of range";
+    if (m.effort > highestEffort) return "effort: out of range";
+    if (rampOf(m.calm) > highestRamp || m.calm >= calmSteps) return "calm: out of range";
     return {};
 }
 

@@ -104,6 +104,8 @@ void World::Data::build(const Scene& scene) {
     info.gravity = canonicalZero(scene.gravity);
     info.stepSeconds = scene.stepSeconds;
     info.substeps = scene.substeps;
+    info.penetrationNeed = canonicalZero(scene.need.penetration);
+    info.jointNeed = canonicalZero(scene.need.joint);
     info.method = static_cast<std::uint32_t>(scene.method);
     info.maxBodies = scene.limits.bodies;
     info.maxShapes = scene.limits.shapes;

@@ -1,5 +1,7 @@
 #include "core/world/from_definition.h"
 
+#include "core/solver/effort.h"
+
 #include "core/state/validate.h"
 
 namespace huestep {
@@ -58,6 +60,7 @@ BodyRecords recordsOf(const BodyDef& def) {
         r.motion.velocity = canonicalZero(def.velocity);
         r.motion.angularVelocity = canonicalZero(def.angularVelocity);
     }
+    if (def.type == BodyType::Dynamic) r.motion.effort = standardEffort;
     if (def.type == BodyType::Dynamic && def.asleep) r.motion.rest = BodyMotion::asleepBit;
     for (const ShapeDef& shape : def.shapes) {
         r.shapes.push_back(shapeInfo(shape, r.info.localCenter));

@@ -57,11 +57,12 @@ bool World::Data::wakeTouched(bool contactDisturbs) {
 
 /// Counts quiet ticks and puts islands to sleep whose every body has been quiet long enough.
 void World::Data::settleIslands() {
-    const auto ticks = static_cast<std::uint32_t>(sleepSeconds / state.info().stepSeconds + 0.5f);
+    const auto ticks = static_cast<std::uint16_t>(sleepSeconds / state.info().stepSeconds + 0.5f);
+    const auto asleep = static_cast<std::uint16_t>(ticks | BodyMotion::asleepBit);
     if (anyAsleep) {
         for (std::size_t body = 0; body < activity.size(); ++body) {
             if ((activity[body] & newToSleep) != 0 && state.motions[body].asleep()) {
-                state.motions[body].rest = ticks | BodyMotion::asleepBit;
+                state.motions[body].rest = asleep;
             }
         }
     }
@@ -73,7 +74,7 @@ void World::Data::settleIslands() {
         if (activity[link.a] == drivesNow) driven[link.b] = 1;
         if (activity[link.b] == drivesNow) driven[link.a] = 1;
     }
-    std::vector<std::uint32_t> fewest(state.bodies.size(), ~0u);  // by island
+    std::vector<std::uint16_t> fewest(state.bodies.size(), 0xffff);  // by island
     for (const std::uint32_t body : plan.awake) {
         BodyMotion& motion = state.motions[body];
         // No point of the body is faster than |v| + |ω| r.
@@ -81,14 +82,15 @@ void World::Data::settleIslands() {
         const float left = sleepSpeed - absoluteOf(spin);
         const bool quiet = left > 0.0f && lengthSquared(motion.velocity) < left * left;
         const bool may = (state.bodies[body].flags & BodyInfo::maySleep) != 0 && !driven[body];
-        motion.rest = quiet && may ? std::min(motion.rest + 1, ticks) : 0;
-        std::uint32_t& island = fewest[plan.islandOf[body]];
+        const auto longer = static_cast<std::uint16_t>(motion.rest + 1);
+        motion.rest = quiet && may ? std::min(longer, ticks) : std::uint16_t{0};
+        std::uint16_t& island = fewest[plan.islandOf[body]];
         island = std::min(island, motion.rest);
     }
     for (const std::uint32_t body : plan.awake) {
         if (fewest[plan.islandOf[body]] < ticks) continue;
         BodyMotion& motion = state.motions[body];
-        motion.rest = ticks | BodyMotion::asleepBit;
+        motion.rest = asleep;
         motion.velocity = {};
         motion.angularVelocity = 0.0f;
     }

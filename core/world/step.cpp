@@ -49,7 +49,10 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
                             accelerators.contacts,
                             accelerators.rowsHold,
                             state.info().gravity,
-                            state.info().stepSeconds};
+                            state.info().stepSeconds,
+                            state.info().planned(),
+                            {state.info().penetrationNeed, state.info().jointNeed},
+                            accelerators.shapes.reach};
     Rows& rows = accelerators.rows;
     const Plan& plan = accelerators.plan;
     // Contacts, joints, motions → rows → impulses, hits; times are kept by stage within.
@@ -57,6 +60,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
           timer);
     if (!accelerators.rowsHold) accelerators.rowStamps.assign(rows.blockCount(), stamp);
     const Moved moved = finish(rows, plan, world, executor);  // rows → motions
+    planEfforts(executor);  // rows → levels of effort, impulses that fit them
     for (const std::uint32_t body : moved.broken) {
         events.quarantined.push_back(state.bodies[body].id);
     }
@@ -171,9 +175,20 @@ void World::Data::updatePlan(Executor* executor) {
         for (std::uint32_t body = 0; body < state.bodies.size(); ++body) {
             if (moves(body)) awake.push_back(body);
         }
+        std::vector<std::uint8_t> efforts, ramps;
+        std::uint32_t substeps = state.info().substeps;
+        if (substeps == 0 && !state.info().planned()) substeps = substepsOf(standardEffort);
+        if (state.info().planned()) {
+            efforts.reserve(state.motions.size());
+            ramps.reserve(state.motions.size());
+            for (const BodyMotion& motion : state.motions) {
+                efforts.push_back(motion.effort);
+                ramps.push_back(rampOf(motion.calm));
+            }
+        }
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
                  static_cast<std::uint32_t>(state.bodies.size()), planLimits,
-                 {state.info().substeps, traitsOf(state.info().solver()).colours});
+                 {substeps, traitsOf(state.info().solver()).colours, efforts, ramps});
         acc.planStamp = stamp;
     } else {
         for (const std::uint32_t lane : acc.freshLanes) {

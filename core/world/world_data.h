@@ -15,6 +15,7 @@
 #include "core/contact/contact.h"
 #include "core/contact/narrow_phase.h"
 #include "core/graph/plan.h"
+#include "core/solver/effort.h"
 #include "core/solver/solve.h"
 #include "core/state/roots.h"
 #include "core/state/state.h"
@@ -107,6 +108,14 @@ struct Carried {
     void become(const Carried& other, bool related);  // carried.cpp
 };
 
+/// What the last step said of an island; of its lowest body.
+struct IslandEffort {
+    float strain = 0;
+    std::int8_t calm = 0;  // the lowest of its bodies
+    bool rests = false;    // none of its bodies moves much, and it has no joint
+    EffortPlan next;
+};
+
 /// Which records the removals of a step left, by place before them, rising. What stays moves
 /// together in this order; what the same step's spawns have added counts from the end.
 struct Kept {
@@ -140,6 +149,8 @@ struct World::Data : Carried {
     Kept kept;
     std::vector<std::uint8_t> removed;  // by body; empty: none
     std::vector<std::uint8_t> removedJoints;
+
+    std::vector<IslandEffort> islandEfforts;  // by body; means nothing but of planned steps
 
     // access.cpp
     [[nodiscard]] std::optional<std::uint32_t> findBody(BodyId id) const;
@@ -193,6 +204,10 @@ struct World::Data : Carried {
     void step(std::span<const Command> commands, const StepResources& with);
     void findPairs(Executor* executor);
     void updatePlan(Executor* executor);
+
+    // effort.cpp
+    /// From the rows of this step, the levels of the next one.
+    void planEfforts(Executor* executor);
 
     // continuous.cpp
     /// Puts fast bodies back to where on their way they met a static or kinematic one.

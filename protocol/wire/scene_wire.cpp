@@ -253,6 +253,8 @@ void put(schema::Scene::Builder to, const Scene& scene) {
     putPoint(to.getGravity(), scene.gravity);
     to.setStepSeconds(scene.stepSeconds);
     to.setSubsteps(scene.substeps);
+    to.getNeed().setPenetration(scene.need.penetration);
+    to.getNeed().setJoint(scene.need.joint);
     to.setMethod(static_cast<schema::Method>(scene.method));
     to.setSleep(scene.sleep);
     if (!scene.bodies.empty()) {
@@ -278,6 +280,8 @@ Scene readScene(Reading& in, schema::Scene::Reader from) {
     scene.gravity = in.point("gravity", from.getGravity());
     scene.stepSeconds = in.real("stepSeconds", from.getStepSeconds());
     scene.substeps = from.getSubsteps();
+    scene.need.penetration = in.real("need.penetration", from.getNeed().getPenetration());
+    scene.need.joint = in.real("need.joint", from.getNeed().getJoint());
     scene.method = in.choice("method", from.getMethod(), lastMethod);
     scene.sleep = from.getSleep();
     scene.bodies = readBodies(in, from.getBodies(), caps::maxBodies);

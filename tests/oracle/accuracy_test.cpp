@@ -91,7 +91,7 @@ TEST(Accuracy, TheHingeSceneComesToRestAndSleeps) {
         EXPECT_TRUE(world.motions()[i].asleep()) << "body " << world.bodies()[i].id;
     }
     EXPECT_LT(measured(world).maxJointError, 5e-3);
-    EXPECT_LT(measured(world).maxPenetration, 5e-3);
+    EXPECT_LT(measured(world).maxPenetration, 0.01) << "visual: 1 % of a box";
 }
 
 }  // namespace

@@ -398,7 +398,7 @@ std::vector<BodyMotion> Box2d3Engine::motions() const {
         motion.rotation = {canonicalZero(q.c), canonicalZero(q.s)};
         motion.velocity = {canonicalZero(velocity.x), canonicalZero(velocity.y)};
         motion.angularVelocity = canonicalZero(b2Body_GetAngularVelocity(body));
-        motion.rest = asleep ? BodyMotion::asleepBit : 0u;
+        motion.rest = asleep ? BodyMotion::asleepBit : std::uint16_t{0};
         result.push_back(motion);
     }
     return result;

@@ -23,7 +23,7 @@ struct HandMade {
         info.inertia = inertia;
         info.gravityScale = 1.0f;
         bodies.push_back(info);
-        motions.push_back({position, {1.0f, 0.0f}, {}, 0.0f, 0});
+        motions.push_back({position, {1.0f, 0.0f}, {}, 0.0f, 0, 0, 0});
         return info.id;
     }
 
@@ -179,7 +179,7 @@ TEST(Measure, CountsTheAngleOfAWeldAsTheWayItSwingsTheCentre) {
     setup.motions[1].position.y = 3.25f;
     EXPECT_NEAR(setup.take().maxJointError, 0.25, 1e-12) << "the anchors are apart";
     // Turned back by 90 degrees about the anchor: the centre is off by the diagonal of 2 m.
-    setup.motions[1] = {{3.0f, 1.0f}, {1.0f, 0.0f}, {}, 0.0f, 0};
+    setup.motions[1] = {{3.0f, 1.0f}, {1.0f, 0.0f}, {}, 0.0f, 0, 0, 0};
     EXPECT_NEAR(setup.take().maxJointError, std::sqrt(8.0), 1e-12);
     joint.flags |= JointInfo::spring;
     EXPECT_NEAR(setup.take().maxJointError, 0.0, 1e-12) << "a spring may have any angle";

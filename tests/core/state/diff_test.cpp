@@ -13,7 +13,7 @@ TEST(Difference, NamesTheBodyAndTheFieldOfAnyFlippedBitWithBothValues) {
     World world = worldOf("small");
     run(world, 30);
     for (std::uint32_t field = 0; field < fieldsOf<BodyMotion>.size(); ++field) {
-        for (std::uint32_t bit = 0; bit < 32; bit += 7) {
+        for (std::uint32_t bit = 0; bit < 8 * sizeOf(fieldsOf<BodyMotion>[field].type); bit += 7) {
             World other = world;
             WorldSpoiler::flip(other, 5, field, bit);
             const auto found = firstDifference(world, other);

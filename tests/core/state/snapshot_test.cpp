@@ -9,6 +9,7 @@
 #include <numbers>
 #include <regex>
 
+#include "core/solver/effort.h"
 #include "core/state/roots.h"
 #include "tests/core/support.h"
 #include "tests/determinism/script.h"
@@ -178,7 +179,9 @@ TEST(Snapshot, WithAnyFieldSpoiledIsRefusedByRecordAndFieldOrCanBeLivedWith) {
                             if constexpr (std::is_same_v<decltype(others), std::vector<Record>&>) {
                                 if (name != array) return;
                                 auto* base = reinterpret_cast<char*>(&others[i]);
-                                std::memcpy(base + field.offset + k * sizeOf(field.type), &bits, 4);
+                                const std::uint32_t size = std::min(sizeOf(field.type), 4u);
+                                std::memcpy(base + field.offset + k * sizeOf(field.type), &bits,
+                                            size);
                             }
                         });
                         const std::string where = std::string(array) + " " + std::to_string(i) +
@@ -275,7 +278,7 @@ TEST(Snapshot, ThatContradictsItselfIsRefusedByRecordAndField) {
     expect("player 1 body", [](WorldState& s) { s.players[1].body = 66; });
     expect("player 1 grab", [](WorldState& s) { s.players[1].grab = 66; });
     expect("world stepSeconds", [](WorldState& s) { s.info().stepSeconds = 0.0f; });
-    expect("world substeps", [](WorldState& s) { s.info().substeps = 0; });
+    expect("world substeps", [](WorldState& s) { s.info().substeps = 65; });
     expect("shape 1 vertices", [](WorldState& s) {
         // Twice around: every corner is a left turn, and edges cross.
         s.shapes[1].kind = 2 | (5 << 8);
@@ -313,6 +316,11 @@ TEST(Snapshot, ThatContradictsItselfIsRefusedByRecordAndField) {
     expect("world maxSpawned", [](WorldState& s) { s.info().maxSpawned = 1u << 20; });
     expect("world maxImpulse", [](WorldState& s) { s.info().maxImpulse = 3.0e38f; });
     expect("world maxForce", [](WorldState& s) { s.info().maxForce = -1.0f; });
+    expect("world penetrationNeed", [](WorldState& s) { s.info().penetrationNeed = 2.0f; });
+    expect("world jointNeed", [](WorldState& s) { s.info().jointNeed = -0.001f; });
+    expect("motion 1 effort", [](WorldState& s) { s.motions[1].effort = highestEffort + 1; });
+    expect("motion 1 calm", [](WorldState& s) { s.motions[1].calm = calmSteps; });
+    expect("motion 1 calm", [](WorldState& s) { s.motions[1].calm = -128; });
     expect("world method", [](WorldState& s) { s.info().method = 200; });
 }
 

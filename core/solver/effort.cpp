@@ -1,0 +1,98 @@
+#include "core/solver/effort.h"
+
+#include <algorithm>
+
+#include "core/math/vec.h"
+
+namespace huestep {
+
+namespace {
+
+// By measurement (docs/effort.md): at 0.2 a pyramid of 5,050 boxes is 2.5 times as exact at rest as
+// at the 0.125 that the field has settled on and takes no longer; at 0.25 some of its contacts
+// flicker. With one or two substeps piles that are small enough to be there do not.
+constexpr float contactShare = 0.2f;
+constexpr float fewContactShare = 0.25f;
+constexpr float jointShare = 0.25f;
+
+constexpr float leastTolerance = 0.005f;    // m
+constexpr float toleranceOfSize = 0.01f;    // of a body's size
+constexpr float sizeOfReach = 1.41421356f;  // a square's side, from its half diagonal
+constexpr float margin = 1.5625f;  // that a lower level needs: from n = 4 to 2 it is 4 in all
+
+constexpr int rampOfOctave = 16;          // steps
+constexpr float rampStep = 0.957603281f;  // 2^(−1/16)
+
+/// Constraint substeps a tick that an island may take: 4,096 constraints at n = 4, 512 at n = 32.
+constexpr std::uint32_t budget = 16'384;
+
+}  // namespace
+
+RowFrequency rowFrequency(std::uint32_t substeps) {
+    return {substeps < 4 ? fewContactShare : contactShare, jointShare};
+}
+
+float softFloor(float frequency, float h) {
+    const float omega = 6.28318530718f * frequency;
+    return h / (omega * omega);
+}
+
+float visualTolerance(float reach) {
+    return maxOf(leastTolerance, toleranceOfSize * (sizeOfReach * reach));
+}
+
+std::uint8_t neededEffort(std::uint8_t level, float strain) {
+    std::uint8_t needed = level;
+    while (strain > 1.0f && needed < 24) {
+        strain *= 0.25f;
+        ++needed;
+    }
+    return needed;
+}
+
+bool isCalm(std::uint8_t level, float strain, const EffortRange& range) {
+    if (level <= range.least) return false;
+    const std::uint32_t n = substepsOf(level);
+    const float stiffer = rowFrequency(n).contact / rowFrequency(n / 2).contact;
+    return margin * (4.0f * stiffer * stiffer) * strain <= 1.0f;
+}
+
+float rampShare(std::uint8_t ramp) {
+    float share = 1.0f;
+    for (int octaves = ramp / rampOfOctave; octaves > 0; --octaves) share *= 0.5f;
+    for (int steps = ramp % rampOfOctave; steps > 0; --steps) share *= rampStep;
+    return share;
+}
+
+EffortPlan planEffort(EffortPlan now, float strain, const EffortRange& range) {
+    if (now.level > range.most) return {range.most, 0};
+    if (now.level < range.least) return {range.least, 0};
+    const int ramp = rampOf(now.calm);
+    // What it will be at the end of the ramp.
+    const float share = rampShare(rampOf(now.calm));
+    const float full = strain * (share * share);
+    const auto plan = [](int level, int calm) {
+        return EffortPlan{static_cast<std::uint8_t>(level), static_cast<std::int8_t>(calm)};
+    };
+    const auto ramping = [](int steps) { return steps > 0 ? 1 - strainedSteps - steps : 0; };
+    if (full > 1.0f && now.level < range.most) {
+        if (ramp == 0 && now.calm > 1 - strainedSteps) {
+            return plan(now.level, std::min<int>(now.calm, 0) - 1);
+        }
+        const std::uint8_t level = std::min(neededEffort(now.level, full), range.most);
+        const int longer = range.ramps ? rampOfOctave * (level - now.level) : 0;
+        return plan(level, ramping(std::min<int>(ramp + longer, highestRamp)));
+    }
+    if (ramp > 0) return plan(now.level, ramping(ramp - 1));
+    if (!isCalm(now.level, strain, range)) return {now.level, 0};
+    if (now.calm + 1 < calmSteps) return plan(now.level, std::max<int>(now.calm, 0) + 1);
+    return plan(now.level - 1, 0);
+}
+
+std::uint8_t affordableEffort(std::uint32_t constraints) {
+    std::uint8_t level = highestEffort;
+    while (level > standardEffort && (constraints << level) > budget) --level;
+    return level;
+}
+
+}  // namespace huestep

@@ -1,0 +1,228 @@
+// How much work the next step gives each island, from how much the rows of this one gave way
+// (core/solver/effort.h).
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/parallel/over_range.h"
+#include "core/solver/effort.h"
+#include "core/world/world_data.h"
+
+namespace huestep {
+
+namespace {
+
+// An island whose bodies are all slower than this rests. Twice what lets bodies fall asleep.
+constexpr float restSpeed = 0.1f;  // m/s, of any point
+
+float mostOf(const float (&lanes)[blockLanes], float most) {
+    for (const float lane : lanes) most = maxOf(most, lane);
+    return most;
+}
+
+/// The islands of one batch. Batches share none, so those of several may work side by side.
+class BatchEffort {
+ public:
+    BatchEffort(World::Data& world, Batch& batch)
+        : m_world(world),
+          m_plan(world.accelerators.plan),
+          m_rows(world.accelerators.rows),
+          m_batch(batch) {
+        const float h = world.state.info().stepSeconds / static_cast<float>(batch.substeps);
+        const RowFrequency frequency = rowFrequency(batch.substeps);
+        m_contactFloor = softFloor(frequency.contact, h);
+        m_jointFloor = softFloor(frequency.joint * rampShare(batch.ramp), h);
+    }
+
+    /// Writes the levels of the batch's bodies, and makes impulses fit them. Returns whether any
+    /// island changes its level.
+    bool decide();
+
+ private:
+    template <class F>
+    void overBodies(F&& f) const;
+    template <class F>
+    void overRows(F&& f) const;
+    [[nodiscard]] float mostStrain() const;
+    [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
+    [[nodiscard]] bool rests(std::uint32_t body) const;
+    [[nodiscard]] bool stays(float strain) const;
+    void gather(std::optional<float> strain);
+    void rescale() const;
+
+    World::Data& m_world;
+    const Plan& m_plan;
+    Rows& m_rows;
+    Batch& m_batch;
+    float m_contactFloor;  // m, of 1 m/s a substep
+    float m_jointFloor;
+};
+
+template <class F>
+void BatchEffort::overBodies(F&& f) const {
+    for (std::uint32_t place = m_batch.firstPlace; place < m_batch.endPlace; ++place) {
+        const std::uint32_t body = m_plan.bodyOfPlace[place];
+        if (m_world.activity[body] == movesNow) f(body);
+    }
+}
+
+/// `f(a, b, strain)` for every row that is strained at all.
+template <class F>
+void BatchEffort::overRows(F&& f) const {
+    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
+        const ContactBlock& rows = m_rows.blocks[block];
+        for (std::size_t i = 0; i < blockLanes; ++i) {
+            if (rows.strain[i] == 0.0f) continue;
+            f(rows.bodyA[i], rows.bodyB[i], m_contactFloor * rows.strain[i]);
+        }
+    }
+    for (std::uint32_t at = m_batch.firstRevoluteBlock; at < m_batch.endRevoluteBlock; ++at) {
+        const RevoluteBlock& rows = m_rows.revolutes[at];
+        for (std::size_t i = 0; i < blockLanes; ++i) {
+            if (rows.strain[i] == 0.0f) continue;
+            f(rows.bodyA[i], rows.bodyB[i], m_jointFloor * std::sqrt(rows.strain[i]));
+        }
+    }
+    for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
+        const JointRow& row = m_rows.joints[i];
+        f(row.bodyA, row.bodyB, m_jointFloor * row.strain);
+    }
+}
+
+float BatchEffort::mostStrain() const {
+    float contacts = 0.0f, revolutes = 0.0f, joints = 0.0f;
+    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
+        contacts = mostOf(m_rows.blocks[block].strain, contacts);
+    }
+    for (std::uint32_t at = m_batch.firstRevoluteBlock; at < m_batch.endRevoluteBlock; ++at) {
+        revolutes = mostOf(m_rows.revolutes[at].strain, revolutes);
+    }
+    for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
+        joints = maxOf(joints, m_rows.joints[i].strain);
+    }
+    return maxOf(m_contactFloor * contacts, m_jointFloor * maxOf(std::sqrt(revolutes), joints));
+}
+
+IslandEffort& BatchEffort::islandOf(BodyPlace a, BodyPlace b) const {
+    const auto place = static_cast<std::size_t>(b >= 0 ? b : readPlace(a));
+    return m_world.islandEfforts[m_plan.islandOf[m_plan.bodyOfPlace[place]]];
+}
+
+/// Impulses of this step's substeps become those of the next one's.
+void BatchEffort::rescale() const {
+    const auto factorOf = [&](const IslandEffort& island) {
+        return static_cast<float>(m_batch.substeps) /
+               static_cast<float>(substepsOf(island.next.level));
+    };
+    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
+        ContactBlock& rows = m_rows.blocks[block];
+        for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
+            if (m_plan.contactOfLane[block * blockLanes + lane] == none) continue;
+            scaleLane(rows, lane, factorOf(islandOf(rows.bodyA[lane], rows.bodyB[lane])));
+        }
+    }
+    const auto scaleJoint = [&](std::uint32_t joint, BodyPlace a, BodyPlace b) {
+        scale(m_world.state.jointImpulses[joint], factorOf(islandOf(a, b)));
+    };
+    for (std::uint32_t at = m_batch.firstRevoluteBlock * blockLanes;
+         at < m_batch.endRevoluteBlock * blockLanes; ++at) {
+        if (m_plan.revoluteOfLane[at] == none) continue;
+        const ConstraintBodies& places = m_plan.revolutePlaces[at];
+        scaleJoint(m_plan.revoluteOfLane[at], places.a, places.b);
+    }
+    for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
+        scaleJoint(m_plan.jointOrder[i], m_rows.joints[i].bodyA, m_rows.joints[i].bodyB);
+    }
+}
+
+/// Whether the body hardly moves.
+bool BatchEffort::rests(std::uint32_t body) const {
+    const BodyMotion& motion = m_world.state.motions[body];
+    const float spin = motion.angularVelocity * m_world.accelerators.shapes.reach[body];
+    const float left = restSpeed - absoluteOf(spin);
+    return left > 0.0f && lengthSquared(motion.velocity) < left * left;
+}
+
+/// What each island brings into the decision; `strain` where it is known to be that of all.
+void BatchEffort::gather(std::optional<float> strain) {
+    overBodies([&](std::uint32_t body) {
+        IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
+        if (m_plan.islandOf[body] == body) {
+            island = {strain.value_or(0.0f), calmSteps, m_plan.jointed[body] == 0, {}};
+        }
+        const BodyMotion& motion = m_world.state.motions[body];
+        // A body that was lifted to the batch's level by others has not been calm there.
+        const bool there = motion.effort == m_batch.effort;
+        const std::int8_t calm = there ? motion.calm : std::min(motion.calm, std::int8_t{0});
+        island.calm = std::min(island.calm, calm);
+        island.rests = island.rests && rests(body);
+    });
+    if (strain) return;
+    overRows([&](BodyPlace a, BodyPlace b, float ofRow) {
+        IslandEffort& island = islandOf(a, b);
+        island.strain = maxOf(island.strain, ofRow);
+    });
+}
+
+/// Whether a giant that is strained so stays as it is, which needs no look at its bodies.
+bool BatchEffort::stays(float strain) const {
+    const EffortRange widest{restingEffort, highestEffort};
+    if (!m_batch.giant || !m_batch.still || m_batch.ramp > 0 || m_batch.effort < standardEffort ||
+        isCalm(m_batch.effort, strain, widest)) {
+        return false;
+    }
+    const EffortRange range{restingEffort, affordableEffort(m_batch.constraints)};
+    const EffortPlan next = planEffort({m_batch.effort, 0}, strain, range);
+    return next.level == m_batch.effort && next.calm == 0;
+}
+
+bool BatchEffort::decide() {
+    const float most = mostStrain();
+    if (stays(most)) return false;
+    // Where every island is as calm as the one that is strained most, none needs a closer look.
+    const EffortRange widest{restingEffort, highestEffort};
+    const bool alike = m_batch.giant || (m_batch.ramp == 0 && isCalm(m_batch.effort, most, widest));
+    gather(alike ? std::optional(most) : std::nullopt);
+    bool changes = false, still = true;
+    overBodies([&](std::uint32_t body) {
+        IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
+        if (m_plan.islandOf[body] == body) {
+            const EffortRange range{island.rests ? restingEffort : standardEffort,
+                                    affordableEffort(m_plan.constraintsOf[body]),
+                                    m_plan.jointed[body] != 0};
+            island.next = planEffort({m_batch.effort, island.calm}, island.strain, range);
+            changes |= island.next.level != m_batch.effort;
+            still = still && island.next.level == m_batch.effort && island.next.calm == 0;
+        }
+        BodyMotion& motion = m_world.state.motions[body];
+        motion.effort = island.next.level;
+        motion.calm = island.next.calm;
+    });
+    m_batch.still = still;
+    if (m_batch.ramp > 0) --m_batch.ramp;
+    if (changes) rescale();
+    return changes;
+}
+
+}  // namespace
+
+void World::Data::planEfforts(Executor* executor) {
+    if (!state.info().planned()) return;
+    Plan& plan = accelerators.plan;
+    islandEfforts.resize(state.bodies.size());
+    std::vector<std::uint8_t> changes(plan.batches.size(), 0);
+    overRange(executor, plan.batches.size(), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            changes[i] = BatchEffort(*this, plan.batches[i]).decide();
+        }
+    });
+    for (const std::uint8_t batch : changes) accelerators.linksStale |= batch != 0;
+    // Who touches nothing starts anew where it lands.
+    for (const std::uint32_t body : plan.freeBodies) {
+        state.motions[body].effort = standardEffort;
+        state.motions[body].calm = 0;
+    }
+}
+
+}  // namespace huestep
