@@ -11,9 +11,9 @@
 
 #include "core/scene/measure.h"
 #include "core/world/world.h"
-#include "tools/ballistic.h"
 #include "tools/definitions.h"
-#include "tools/pendulum.h"
+#include "tools/metrics/ballistic.h"
+#include "tools/metrics/pendulum.h"
 #include "tools/text.h"
 
 namespace huestep::tools {

@@ -38,6 +38,7 @@ struct Menu {
 };
 
 void addScenes(Menu& menu);
+void addAccuracy(Menu& menu);
 void addRun(Menu& menu);
 void addVerify(Menu& menu);
 void addServe(Menu& menu);

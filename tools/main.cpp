@@ -50,6 +50,7 @@ int runProgram(int count, char** words) {
     addReplay(menu);
     addDiff(menu);
     addBench(menu);
+    addAccuracy(menu);
     try {
         app.parse(count, words);
     } catch (const CLI::Success& help) {

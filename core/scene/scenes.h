@@ -37,6 +37,10 @@ Scene pendulum(Values values);
 Scene doublePendulum(Values values);
 Scene chain(Values values);
 Scene stack(Values values);
+Scene arm(Values values);
+Scene bounce(Values values);
+Scene ramp(Values values);
+Scene slide(Values values);
 
 // Everything at once.
 Scene hinges(Values values);

@@ -1,5 +1,6 @@
 // Scenes whose right answer is known: a parabola, elliptic integrals, an ordinary differential
-// equation in minimal coordinates, or the closed-form floor of soft rows (physics page, A3 to A7).
+// equation in minimal coordinates, Coulomb's and Newton's laws, or the closed-form floor of soft
+// rows (physics page, A3 to A17).
 #include "core/math/trig.h"
 #include "core/scene/scenes.h"
 
@@ -18,6 +19,22 @@ ShapeDef ghost(ShapeDef shape) {
 
 Rotation degrees(double angle) {
     return rotationOf(static_cast<float>(angle * pi / 180.0));
+}
+
+/// A unit box or a disc of radius 0.5 m that stands with its centre half a metre above the floor.
+BodyDef slider(bool disc, float friction) {
+    BodyDef body = bodyOf(BodyType::Dynamic, {},
+                          disc ? ShapeDef::circle({}, 0.5f) : ShapeDef::box(0.5f, 0.5f));
+    body.shapes[0].material.friction = friction;
+    return body;
+}
+
+/// A floor whose surface goes through the origin along `q`, 50 m to either side.
+BodyDef floorOf(Rotation q, float friction) {
+    BodyDef floor = bodyOf(BodyType::Static, {}, ShapeDef::box(50.0f, 1.0f, {0.0f, -1.0f}));
+    floor.shapes[0].material.friction = friction;
+    floor.rotation = q;
+    return floor;
 }
 
 /// Hangs `body` by its point `localAnchor` on the point `hook` of body `holder`, turned by `q`.
@@ -97,6 +114,56 @@ Scene stack(Values values) {
         const Vec2 position{i % 2 == 0 ? 0.01f : -0.01f, static_cast<float>(i) + 0.5f};
         add(scene, bodyOf(BodyType::Dynamic, position, box));
     }
+    return scene;
+}
+
+Scene arm(Values values) {
+    Scene scene;
+    scene.sleep = false;
+    scene.gravity = {};
+    const std::uint32_t pivot = add(scene, BodyDef{});
+    BodyDef bob = bodyOf(BodyType::Dynamic, {}, ghost(ShapeDef::circle({}, bobRadius)));
+    bob.angularVelocity = static_cast<float>(values[0]);
+    bob.velocity = {0.0f, 5.0f * bob.angularVelocity};
+    hang(scene, pivot, {}, bob, {-5.0f, 0.0f}, {});
+    return scene;
+}
+
+Scene bounce(Values values) {
+    Scene scene;
+    scene.sleep = false;
+    BodyDef ground = floorOf({}, 0.6f);
+    BodyDef ball = slider(true, 0.6f);
+    ball.position = {0.0f, 0.5f + static_cast<float>(values[1])};
+    for (BodyDef* body : {&ground, &ball}) {
+        body->shapes[0].material.restitution = static_cast<float>(values[0]);
+        add(scene, *body);
+    }
+    return scene;
+}
+
+Scene ramp(Values values) {
+    Scene scene;
+    scene.sleep = false;
+    const Rotation down = degrees(-values[0]);
+    const auto friction = static_cast<float>(values[1]);
+    add(scene, floorOf(down, friction));
+    BodyDef body = slider(values[2] != 0.0, friction);
+    body.position = rotate(down, Vec2{0.0f, 0.5f});
+    body.rotation = down;
+    add(scene, body);
+    return scene;
+}
+
+Scene slide(Values values) {
+    Scene scene;
+    scene.sleep = false;
+    const auto friction = static_cast<float>(values[1]);
+    add(scene, floorOf({}, friction));
+    BodyDef body = slider(values[2] != 0.0, friction);
+    body.position = {0.0f, 0.5f};
+    body.velocity = {static_cast<float>(values[0]), 0.0f};
+    add(scene, body);
     return scene;
 }
 

@@ -344,9 +344,10 @@ TEST(Catalog, ReadsParametersInAnyOrderAndFractionsWhereTheyMakeSense) {
 TEST(Catalog, NamesWhatIsWrongAndWhatThereIsInstead) {
     EXPECT_EQ(
         sentenceFor("pyrmaid"),
-        "there is no scene 'pyrmaid'; there are ballistic, chain, compounds, double_pendulum, "
-        "hinges, joint_grid, joints, junkyard, many_pyramids, mixed, pendulum, pyramid, rain, "
-        "sandbox, small, smash, spinner, stack, terrain, tumbler, washer");
+        "there is no scene 'pyrmaid'; there are arm, ballistic, bounce, chain, compounds, "
+        "double_pendulum, hinges, joint_grid, joints, junkyard, many_pyramids, mixed, pendulum, "
+        "pyramid, rain, ramp, sandbox, slide, small, smash, spinner, stack, terrain, tumbler, "
+        "washer");
     EXPECT_EQ(sentenceFor("many_pyramids:bse=1"),
               "many_pyramids has no parameter 'bse'; it has rows, columns, base");
     EXPECT_EQ(sentenceFor("mixed:base=1"), "mixed has no parameter 'base'; it has none");

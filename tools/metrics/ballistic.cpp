@@ -1,4 +1,4 @@
-#include "tools/ballistic.h"
+#include "tools/metrics/ballistic.h"
 
 #include <algorithm>
 

@@ -15,6 +15,7 @@ namespace huestep::tools {
 struct PendulumResult {
     double period = 0.0;      ///< s, mean over whole swings
     double exact = 0.0;       ///< s
+    double phase = 0.0;       ///< rad, by how much it lags at its last passage; < 0: leads
     double energyLoss = 0.0;  ///< share of the energy above the lowest point; < 0: gained
 };
 
@@ -34,6 +35,7 @@ class Pendulum {
  private:
     Pendulum() = default;
     [[nodiscard]] double angle(const BodyMotion& bob) const;   ///< rad from hanging
+    [[nodiscard]] double rate(const BodyMotion& bob) const;    ///< rad/s, of that angle
     [[nodiscard]] double energy(const BodyMotion& bob) const;  ///< J above hanging at rest
 
     std::size_t m_bob = 0;  ///< place of the body that swings
@@ -48,6 +50,7 @@ class Pendulum {
     Vec2T<double> m_down;  ///< unit vector
     double m_seconds = 0.0;
     double m_lastAngle = 0.0;
+    double m_lastRate = 0.0;
     std::vector<double> m_crossings;  ///< s, when it passed the lowest point
 };
 

@@ -1,4 +1,4 @@
-#include "tools/pendulum.h"
+#include "tools/metrics/pendulum.h"
 
 #include <cmath>
 #include <numbers>
@@ -18,6 +18,22 @@ double agm(double a, double b) {
         a = mean;
     }
     return a;
+}
+
+/// Where in [0, 1] the cubic with these ends and slopes is zero; the ends have opposite signs.
+double zeroOfCubic(double from, double slopeFrom, double to, double slopeTo) {
+    const auto cubic = [&](double t) {
+        const double u = 1.0 - t;
+        return (1.0 + 2.0 * t) * u * u * from + t * u * u * slopeFrom +
+               t * t * (3.0 - 2.0 * t) * to - t * t * u * slopeTo;
+    };
+    double low = 0.0;
+    double high = 1.0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        ((cubic(middle) < 0.0) == (from < 0.0) ? low : high) = middle;
+    }
+    return low;
 }
 
 bool swingsFreely(const BodyInfo& body, const BodyMotion& motion) {
@@ -68,6 +84,11 @@ double Pendulum::angle(const BodyMotion& bob) const {
     return std::atan2(cross(m_down, arm), dot(m_down, arm));
 }
 
+double Pendulum::rate(const BodyMotion& bob) const {
+    const Vec2d arm = inDouble(bob.position) - m_pivot;
+    return cross(arm, inDouble(bob.velocity)) / lengthSquared(arm);
+}
+
 double Pendulum::energy(const BodyMotion& bob) const {
     const auto spin = static_cast<double>(bob.angularVelocity);
     const double height = m_length - dot(m_down, inDouble(bob.position) - m_pivot);
@@ -77,12 +98,16 @@ double Pendulum::energy(const BodyMotion& bob) const {
 
 void Pendulum::watch(std::span<const BodyMotion> motions) {
     const double now = angle(motions[m_bob]);
-    // At the lowest point the angle has no second derivative, so a straight line between two ticks
-    // finds the crossing to third order. Far from it a change of sign is the jump of atan2 at ±π.
+    const double rateNow = rate(motions[m_bob]);
+    // Angles and rates at both ends of the tick give the passage to fourth order. Far from the
+    // lowest point a change of sign is the jump of atan2 at ±π.
     const bool low = std::abs(now) < 0.5 * std::numbers::pi;
-    if (low && (now < 0.0) != (m_lastAngle < 0.0))
-        m_crossings.push_back(m_seconds + m_step * m_lastAngle / (m_lastAngle - now));
+    if (low && (now < 0.0) != (m_lastAngle < 0.0)) {
+        const double part = zeroOfCubic(m_lastAngle, m_step * m_lastRate, now, m_step * rateNow);
+        m_crossings.push_back(m_seconds + m_step * part);
+    }
     m_lastAngle = now;
+    m_lastRate = rateNow;
     m_seconds += m_step;
 }
 
@@ -90,8 +115,14 @@ std::optional<PendulumResult> Pendulum::result(std::span<const BodyMotion> last)
     if (m_crossings.size() < 3) return std::nullopt;
     const std::size_t swings = (m_crossings.size() - 1) / 2;
     const double time = m_crossings[2 * swings] - m_crossings[0];
-    return PendulumResult{time / static_cast<double>(swings), m_exact,
-                          (m_startEnergy - energy(last[m_bob])) / m_startEnergy};
+    PendulumResult result;
+    result.period = time / static_cast<double>(swings);
+    result.exact = m_exact;
+    // From rest it passes after a quarter of its period, then every half.
+    const double due = (0.25 + 0.5 * static_cast<double>(m_crossings.size() - 1)) * m_exact;
+    result.phase = 2.0 * std::numbers::pi * (m_crossings.back() - due) / m_exact;
+    result.energyLoss = (m_startEnergy - energy(last[m_bob])) / m_startEnergy;
+    return result;
 }
 
 }  // namespace huestep::tools

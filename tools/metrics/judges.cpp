@@ -1,0 +1,79 @@
+#include "tools/metrics/judges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace huestep::tools {
+namespace {
+
+class Folded final : public Judge {
+ public:
+    Folded(const World& start, Fold fold, Window window, Measure measure)
+        : m_bodies(start.motions().size()),
+          m_step(static_cast<double>(start.info().stepSeconds)),
+          m_fold(fold),
+          m_window(window),
+          m_measure(std::move(measure)) {}
+
+    void watch(std::uint64_t tick, std::span<const Command>, std::span<const BodyMotion> motions,
+               bool) override {
+        if (tick < m_window.first || tick > m_window.last) return;
+        const bool same = motions.size() == m_bodies;
+        const double value =
+            same ? m_measure({tick, static_cast<double>(tick) * m_step, motions}) : failed;
+        const double size = std::isfinite(value) ? std::abs(value) : failed;
+        ++m_count;
+        switch (m_fold) {
+            case Fold::Last:
+                m_value = size;
+                break;
+            case Fold::Most:
+                m_value = std::max(m_value, size);
+                break;
+            case Fold::Rms:
+                m_value += size * size;
+                break;
+        }
+    }
+
+    [[nodiscard]] double error() const override {
+        if (m_count == 0) return failed;
+        return m_fold == Fold::Rms ? std::sqrt(m_value / static_cast<double>(m_count)) : m_value;
+    }
+
+ private:
+    std::size_t m_bodies;
+    double m_step;  // s
+    Fold m_fold;
+    Window m_window;
+    Measure m_measure;
+    double m_value = 0.0;
+    std::uint64_t m_count = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Judge> folded(const World& start, Fold fold, Window window, Measure measure) {
+    return std::make_unique<Folded>(start, fold, window, std::move(measure));
+}
+
+Start::Start(const World& world)
+    : info(world.info()),
+      bodies(world.bodies().begin(), world.bodies().end()),
+      shapes(world.shapes().begin(), world.shapes().end()),
+      joints(world.joints().begin(), world.joints().end()),
+      motions(world.motions().begin(), world.motions().end()) {}
+
+Measures Start::measured(std::span<const BodyMotion> now) const {
+    return measure(info, bodies, shapes, joints, now);
+}
+
+double Start::kinetic(std::span<const BodyMotion> now) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (bodies[i].dynamic()) sum += kineticEnergy(bodies[i], now[i]);
+    }
+    return sum;
+}
+
+}  // namespace huestep::tools
