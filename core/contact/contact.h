@@ -23,6 +23,7 @@ struct alignas(64) Contact {
     float turn = 0;  ///< body A's rotation when the manifold was made, see `turnOf`
     std::uint16_t feature[2]{};
     std::uint8_t pointCount = 0;  ///< 0: not touching any more
+    std::uint8_t began = 0;       ///< 1: in this very step
 
     // The manifold, turned into the world as body A was when it was made, and the impulses.
     ContactFields<float> row{};

@@ -127,6 +127,7 @@ Manifold manifoldOf(std::uint32_t bodyA, std::uint32_t bodyB, std::uint32_t shap
 
 void beginContact(Contact& contact, const Manifold& manifold, const NarrowPhaseInput& in) {
     contact.turn = turnOf(in.motions[contact.bodyA].rotation);
+    contact.began = 1;
     setManifold(contact, relativePose(contact.bodyA, contact.bodyB, in), manifold);
 }
 

@@ -56,8 +56,12 @@ void Builder::findAllIslands() {
     effortOf.assign(count, 0);
     rampOfIsland.assign(count, 0);
     for (const std::uint32_t body : plan.awake) {
+        // The highest level of its bodies; it rests if they all do.
         std::uint8_t& island = effortOf[plan.islandOf[body]];
-        island = std::max(island, demand.efforts[body]);
+        const std::uint8_t effort = demand.efforts[body];
+        if (plan.islandOf[body] == body) island = effort;
+        const bool rests = restsAt(island) && restsAt(effort);
+        island = EffortPlan{std::max(levelOf(island), levelOf(effort)), 0, rests}.packed();
         std::uint8_t& ramp = rampOfIsland[plan.islandOf[body]];
         ramp = std::max(ramp, demand.ramps[body]);
     }
@@ -70,9 +74,10 @@ void Builder::packBatches() {
     plan.batches.clear();
     plan.freeBodies.clear();
     plan.islands = 0;
-    // By ramp and effort: the batch that small islands still go to.
-    std::array<std::array<std::uint32_t, highestEffort + 1>, highestRamp + 1> openOf{};
-    for (auto& ofRamp : openOf) ofRamp.fill(none);
+    // By ramp, rest and level: the batch that small islands still go to.
+    constexpr std::uint32_t levels = highestEffort + 1;
+    std::array<std::uint32_t, (highestRamp + 1) * 2 * levels> openOf{};
+    openOf.fill(none);
     for (const std::uint32_t body : plan.awake) {
         if (plan.islandOf[body] != body) continue;
         const std::uint32_t size = plan.constraintsOf[body];
@@ -82,19 +87,20 @@ void Builder::packBatches() {
         }
         ++plan.islands;
         const bool giant = size > limits.batchSize;
-        const std::uint8_t effort = demand.substeps != 0
-                                        ? std::uint8_t{0}
-                                        : std::min(effortOf[body], affordableEffort(size));
-        const std::uint8_t ramp =
-            demand.substeps == 0 && plan.jointed[body] ? rampOfIsland[body] : std::uint8_t{0};
-        std::uint32_t& open = openOf[ramp][effort];
+        const bool planned = demand.substeps == 0;
+        const std::uint8_t effort =
+            planned ? std::min(levelOf(effortOf[body]), affordableEffort(size)) : std::uint8_t{0};
+        const bool rests = planned && restsAt(effortOf[body]);
+        const std::uint8_t ramp = planned ? rampOfIsland[body] : std::uint8_t{0};
+        std::uint32_t& open = openOf[(ramp * 2u + (rests ? 1u : 0u)) * levels + effort];
         if (giant || open == none || plan.batches[open].constraints + size > limits.batchSize) {
             const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
             Batch batch;
             batch.giant = giant;
             batch.effort = effort;
             batch.ramp = ramp;
-            batch.substeps = demand.substeps != 0 ? demand.substeps : substepsOf(effort);
+            batch.rests = rests;
+            batch.substeps = planned ? substepsOf(effort) : demand.substeps;
             plan.batches.push_back(batch);
             batchOf[body] = fresh;
             if (!giant) open = fresh;

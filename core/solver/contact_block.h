@@ -69,6 +69,8 @@ struct alignas(64) ContactBlock : ContactFields<LaneRow> {
     std::int32_t mayHit;            ///< whether any lane approaches fast enough to hit or bounce
     /// Of a hub's block: by how many lanes the hub's mass was divided last; 0: rows are as made.
     std::uint32_t shares;
+    std::int32_t cold[blockLanes];  ///< −1: the contact began in this step, and gets `relaxCold`
+    std::int32_t anyCold;           ///< whether any lane is
     // Where substeps are planned.
     LaneRow allowance;  ///< 1/m, of what a lane may overlap; 0: padding
     LaneRow strain;     ///< s⁻¹: the speed by which its last impulses change it, times that
@@ -108,11 +110,12 @@ struct ContactFeatures {
     bool rolling = false;
     bool tangentSpeed = false;
     bool restitution = false;
+    bool cold = false;  ///< a contact that began in this step
 };
 
 constexpr ContactFeatures operator|(ContactFeatures a, ContactFeatures b) {
     return {a.friction || b.friction, a.rolling || b.rolling, a.tangentSpeed || b.tangentSpeed,
-            a.restitution || b.restitution};
+            a.restitution || b.restitution, a.cold || b.cold};
 }
 
 /// Constants of a pass.
@@ -165,6 +168,7 @@ struct ContactKernels {
     ContactKernel warmStartAgain = nullptr;  ///< of bodies that do not carry their impulses over
     ContactKernel solve = nullptr;           ///< normals with bias
     ContactKernel relax = nullptr;           ///< normals without bias, then friction and rolling
+    ContactKernel relaxCold = nullptr;  ///< `relax` once more, of contacts that began
     ContactKernel restitute = nullptr;
     ContactSettle settle = nullptr;
     ContactCount countActive = nullptr;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "core/contact/narrow_phase.h"
 #include "core/solver/body_lanes.h"
@@ -242,6 +243,43 @@ HUESTEP_INLINE void relaxLanes(SolverBody* bodies, ContactBlock& block, int lane
     pair.store(bodies, block, lane);
 }
 
+/// Normals and friction of a contact that has just begun know nothing of each other: each of these
+/// passes brings them nearer. All other lanes keep what they have, to the bit.
+template <int W>
+HUESTEP_INLINE void relaxColdLanes(SolverBody* bodies, ContactBlock& block, int lane,
+                                   const ContactPass& pass) {
+    if (block.anyCold == 0) return;
+    const auto cold = loadMask<W>(block.cold + lane);
+    const Pair<W> before(bodies, block, lane);
+    Pair<W> pair = before;
+    float* const rows[] = {block.points[0].normalImpulse,
+                           block.points[1].normalImpulse,
+                           block.points[0].tangentImpulse,
+                           block.points[1].tangentImpulse,
+                           block.points[0].maxNormalImpulse,
+                           block.points[1].maxNormalImpulse,
+                           block.rollingImpulse};
+    LaneF<W> old[std::size(rows)];
+    for (std::size_t i = 0; i < std::size(rows); ++i) old[i] = loadLanes<W>(rows[i] + lane);
+    const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
+    const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
+    solveNormals<W, false>(pair, a, b, block, lane, pass);
+    if (pass.features.friction) solveFriction<W>(pair, block, lane, pass);
+    if (pass.features.rolling) solveRolling<W>(pair, block, lane);
+    for (std::size_t i = 0; i < std::size(rows); ++i) {
+        storeLanes<W>(rows[i] + lane, selectLanes(cold, loadLanes<W>(rows[i] + lane), old[i]));
+    }
+    const auto keep = [&](VelocityLanes<W> & now, const VelocityLanes<W>& was)
+        __attribute__((always_inline)) {
+        now.vx = selectLanes(cold, now.vx, was.vx);
+        now.vy = selectLanes(cold, now.vy, was.vy);
+        now.w = selectLanes(cold, now.w, was.w);
+    };
+    keep(pair.a, before.a);
+    keep(pair.b, before.b);
+    pair.store(bodies, block, lane);
+}
+
 /// Newton's law once at the end of the step, where the approach was above 1 m/s and the point
 /// pushed at all: bodies that meet speculatively bounce with the speed they came with.
 template <int W>
@@ -293,7 +331,9 @@ HUESTEP_INLINE void activeLanes(const SolverBody* bodies, const ContactBlock& bl
         const LaneF<W> tangent = loadLanes<W>(p.tangentImpulse + lane);
         const auto pushes = either(loadLanes<W>(p.normalImpulse + lane) > zero,
                                    either(tangent > zero, tangent < zero));
-        const auto meets = either(closing < zero, s < zero);
+        // What has pushed in this step may still bounce (0 in blocks that nothing hits).
+        const auto meets = either(either(closing < zero, s < zero),
+                                  loadLanes<W>(p.maxNormalImpulse + lane) > zero);
         any = either(any, both(loadLanes<W>(p.normalMass + lane) > zero, either(pushes, meets)));
     }
     storeMask<W>(active + lane, any);
@@ -439,11 +479,12 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
     HUESTEP_PASS(warmStartAgain, ContactBlock, ContactPass, W, attributes) \
     HUESTEP_PASS(solve, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)          \
+    HUESTEP_PASS(relaxCold, ContactBlock, ContactPass, W, attributes)      \
     HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes)                                                     \
-    ContactKernels{                                                                      \
-        check##W,     refresh##W, warmStart##W,   warmStartAgain##W, solve##W, relax##W, \
-        restitute##W, settle##W,  countActive##W, shareHub##W,       strain##W},
+#define HUESTEP_ENTRY(W, attributes)                                           \
+    ContactKernels{check##W,  refresh##W,     warmStart##W, warmStartAgain##W, \
+                   solve##W,  relax##W,       relaxCold##W, restitute##W,      \
+                   settle##W, countActive##W, shareHub##W,  strain##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 

@@ -8,11 +8,14 @@ namespace huestep {
 
 namespace {
 
-// By measurement (docs/effort.md): at 0.2 a pyramid of 5,050 boxes is 2.5 times as exact at rest as
-// at the 0.125 that the field has settled on and takes no longer; at 0.25 some of its contacts
-// flicker. With one or two substeps piles that are small enough to be there do not.
-constexpr float contactShare = 0.2f;
-constexpr float fewContactShare = 0.25f;
+// At n = 4 and 60 Hz 0.125 are the 30 Hz that the field has settled on (physics page, "Starting
+// point"). What rests may be stiffer, by measurement: at 0.2 the overlap of a pyramid of 5,050
+// boxes is 2.5 times smaller and a step takes no longer; at 0.25 some of its contacts flicker, and
+// those of piles that are small enough for n = 2 do not. What is hit must not: at 0.2 a box of 300
+// times their mass that falls on ten rows of boxes throws them about.
+constexpr float contactShare = 0.125f;
+constexpr float restingContactShare = 0.2f;
+constexpr float fewRestingContactShare = 0.25f;
 constexpr float jointShare = 0.25f;
 
 constexpr float leastTolerance = 0.005f;    // m
@@ -20,7 +23,13 @@ constexpr float toleranceOfSize = 0.01f;    // of a body's size
 constexpr float sizeOfReach = 1.41421356f;  // a square's side, from its half diagonal
 constexpr float margin = 1.5625f;  // that a lower level needs: from n = 4 to 2 it is 4 in all
 
-constexpr int rampOfOctave = 16;          // steps
+// Of a contact between bodies of unlike mass: from which ratio on, and the inverse effective mass
+// of a box's corner row, in inverse masses of the box.
+constexpr float leastRatio = 8.0f;
+constexpr float rowOfLight = 2.5f;
+
+constexpr int rampOfOctave = 16;
+constexpr int contactRamp = 4;            // of an octave: they push at 3 m/s at most
 constexpr float rampStep = 0.957603281f;  // 2^(−1/16)
 
 /// Constraint substeps a tick that an island may take: 4,096 constraints at n = 4, 512 at n = 32.
@@ -28,8 +37,9 @@ constexpr std::uint32_t budget = 16'384;
 
 }  // namespace
 
-RowFrequency rowFrequency(std::uint32_t substeps) {
-    return {substeps < 4 ? fewContactShare : contactShare, jointShare};
+RowFrequency rowFrequency(std::uint32_t substeps, bool rests) {
+    const float resting = substeps < 4 ? fewRestingContactShare : restingContactShare;
+    return {rests ? resting : contactShare, jointShare};
 }
 
 float softFloor(float frequency, float h) {
@@ -53,7 +63,8 @@ std::uint8_t neededEffort(std::uint8_t level, float strain) {
 bool isCalm(std::uint8_t level, float strain, const EffortRange& range) {
     if (level <= range.least) return false;
     const std::uint32_t n = substepsOf(level);
-    const float stiffer = rowFrequency(n).contact / rowFrequency(n / 2).contact;
+    const float stiffer =
+        rowFrequency(n, range.rests).contact / rowFrequency(n / 2, range.rests).contact;
     return margin * (4.0f * stiffer * stiffer) * strain <= 1.0f;
 }
 
@@ -65,28 +76,41 @@ float rampShare(std::uint8_t ramp) {
 }
 
 EffortPlan planEffort(EffortPlan now, float strain, const EffortRange& range) {
-    if (now.level > range.most) return {range.most, 0};
-    if (now.level < range.least) return {range.least, 0};
+    const auto plan = [&](int level, int calm) {
+        return EffortPlan{static_cast<std::uint8_t>(level), static_cast<std::int8_t>(calm),
+                          range.rests};
+    };
+    if (now.level > range.most) return plan(range.most, 0);
+    if (now.level < range.least) return plan(range.least, 0);
     const int ramp = rampOf(now.calm);
     // What it will be at the end of the ramp.
     const float share = rampShare(rampOf(now.calm));
     const float full = strain * (share * share);
-    const auto plan = [](int level, int calm) {
-        return EffortPlan{static_cast<std::uint8_t>(level), static_cast<std::int8_t>(calm)};
-    };
     const auto ramping = [](int steps) { return steps > 0 ? 1 - strainedSteps - steps : 0; };
     if (full > 1.0f && now.level < range.most) {
         if (ramp == 0 && now.calm > 1 - strainedSteps) {
             return plan(now.level, std::min<int>(now.calm, 0) - 1);
         }
         const std::uint8_t level = std::min(neededEffort(now.level, full), range.most);
-        const int longer = range.ramps ? rampOfOctave * (level - now.level) : 0;
+        const int longer = (range.jointed ? rampOfOctave : contactRamp) * (level - now.level);
         return plan(level, ramping(std::min<int>(ramp + longer, highestRamp)));
     }
     if (ramp > 0) return plan(now.level, ramping(ramp - 1));
-    if (!isCalm(now.level, strain, range)) return {now.level, 0};
+    if (!isCalm(now.level, strain, range)) return plan(now.level, 0);
     if (now.calm + 1 < calmSteps) return plan(now.level, std::max<int>(now.calm, 0) + 1);
     return plan(now.level - 1, 0);
+}
+
+float strainOfBeginning(float inverseMassA, float inverseMassB, float approach, float gravity,
+                        float stepSeconds, float allowance, std::uint8_t level) {
+    const float light = maxOf(inverseMassA, inverseMassB),
+                heavy = minOf(inverseMassA, inverseMassB);
+    if (!(heavy > 0.0f) || light < leastRatio * heavy) return 0.0f;
+    const std::uint32_t n = substepsOf(level);
+    const float h = stepSeconds / static_cast<float>(n);
+    const float push = (gravity + maxOf(approach, 0.0f) / stepSeconds) * h;  // m/s a substep
+    const float change = rowOfLight * (light / heavy) * push;
+    return change * allowance * softFloor(rowFrequency(n, false).contact, h);
 }
 
 std::uint8_t affordableEffort(std::uint32_t constraints) {

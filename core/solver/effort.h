@@ -26,15 +26,16 @@ inline constexpr std::int8_t calmSteps = 30;
 /// Steps for which rows must be strained before a higher level is taken: an impact is over by then.
 inline constexpr std::int8_t strainedSteps = 3;
 
-/// How many steps a raised island's joints still take to their full frequency, which they approach
-/// by a sixteenth of an octave a step. Stretched joints that were stiffened at once would be given
-/// the energy of the stiffer spring: a chain of ratio 100 swung 2.6 times as high.
+/// How many sixteenths of an octave a raised island's rows are still below their full frequency.
+/// They come nearer by one a step. Stretched joints that were stiffened at once would be given the
+/// energy of the stiffer spring: a chain of ratio 100 swung 2.6 times as high. An island of
+/// contacts alone has only a quarter of the way to go: waiting costs it more than the push.
 constexpr std::uint8_t rampOf(std::int8_t calm) {
     constexpr int first = 1 - strainedSteps;
     return calm < first ? static_cast<std::uint8_t>(first - calm) : std::uint8_t{0};
 }
 inline constexpr std::uint8_t highestRamp = 64;
-/// The share of its full frequency that a joint has so many steps before the end of a ramp: (0, 1].
+/// The share of its full frequency that a row has so far below it: (0, 1].
 float rampShare(std::uint8_t ramp);
 
 /// Frequencies of rows as shares of the substep rate.
@@ -42,7 +43,7 @@ struct RowFrequency {
     float contact;  ///< against static and kinematic bodies twice that
     float joint;
 };
-RowFrequency rowFrequency(std::uint32_t substeps);
+RowFrequency rowFrequency(std::uint32_t substeps, bool rests);
 
 /// Violation at rest for an impulse that changes a row's velocity by 1 m/s a substep of `h`
 /// seconds: m. `frequency`: share of the substep rate.
@@ -56,17 +57,37 @@ float visualTolerance(float reach);
 struct EffortPlan {
     std::uint8_t level = standardEffort;
     std::int8_t calm = 0;  ///< steps; −1, −2: strained; below: a ramp, see `rampOf`
+    bool rests = false;    ///< contacts may be stiffer: nothing hits anything
+
+    // Level and rest as a body's state keeps them.
+    static constexpr std::uint8_t restsBit = 0x80;
+    [[nodiscard]] constexpr std::uint8_t packed() const {
+        return static_cast<std::uint8_t>(level | (rests ? restsBit : 0));
+    }
 };
+constexpr std::uint8_t levelOf(std::uint8_t effort) {
+    return effort & (EffortPlan::restsBit - 1);
+}
+constexpr bool restsAt(std::uint8_t effort) {
+    return (effort & EffortPlan::restsBit) != 0;
+}
 
 /// Between which levels an island may be.
 struct EffortRange {
     std::uint8_t least = standardEffort;  ///< `restingEffort` of one that rests and has no joint
     std::uint8_t most = highestEffort;    ///< `affordableEffort`; what needs more stays there
-    bool ramps = false;                   ///< whether the island has joints
+    bool rests = false;                   ///< whether nothing in it moves much
+    bool jointed = false;                 ///< whether it has joints
 };
 
 /// From the level that this step took, how long it has been calm, and the strain it ended with.
 EffortPlan planEffort(EffortPlan now, float strain, const EffortRange& range);
+
+/// What the strain of a contact that begins will be, which no impulse tells yet: the heavier body's
+/// weight and its momentum over a step, on a row of the lighter one. Of bodies of like mass, 0:
+/// what they do to each other is over before it is known.
+float strainOfBeginning(float inverseMassA, float inverseMassB, float approach, float gravity,
+                        float stepSeconds, float allowance, std::uint8_t level);
 
 /// Whether the level below would do, with a margin.
 bool isCalm(std::uint8_t level, float strain, const EffortRange& range);

@@ -48,7 +48,8 @@ struct BatchTask {
     Rows& rows;
     float stepSeconds;         ///< s
     std::uint32_t substeps;    ///< n; of methods without substeps: iterations
-    float jointRamp;           ///< share of their frequency that joints have: (0, 1]
+    float ramp;                ///< share of their frequency that rows have: (0, 1]
+    bool rests;                ///< whether contacts may be stiffer
     ContactFeatures features;  ///< of all contact rows
     const ContactKernels& contacts;
     const RevoluteKernels& revolutes;

@@ -60,6 +60,13 @@ BodyPlace warmPlace(const Plan& plan, BodyPlace place) {
     return place < 0 || plan.hasJoint[static_cast<std::size_t>(place)] != 0 ? place : ~place;
 }
 
+/// Whether an island is small enough for more than the standard effort.
+bool mayTakeMore(const Plan& plan, const ConstraintBodies& places) {
+    const auto place = static_cast<std::size_t>(places.b >= 0 ? places.b : readPlace(places.a));
+    const std::uint32_t island = plan.islandOf[plan.bodyOfPlace[place]];
+    return affordableEffort(plan.constraintsOf[island]) > standardEffort;
+}
+
 /// What impulses of substeps of one level are in those of another: exact, a power of two.
 float impulseScale(std::uint8_t from, std::uint8_t to) {
     return static_cast<float>(substepsOf(from)) / static_cast<float>(substepsOf(to));
@@ -112,7 +119,7 @@ void Rows::prepareBodies(const Plan& plan, const SolverWorld& world, float h, Ra
         poses[place] = {motion.position.x, motion.position.y, motion.rotation.c, motion.rotation.s};
         BodySource source;
         source.inverseInertia = info.inverseInertia;
-        source.effort = motion.effort;
+        source.effort = levelOf(motion.effort);
         if (info.dynamic()) {
             source.acceleration = info.gravityScale * world.gravity;
             if (!world.forces.empty()) {
@@ -124,7 +131,8 @@ void Rows::prepareBodies(const Plan& plan, const SolverWorld& world, float h, Ra
             // have no such rest to lose, and a pendulum's period gets twice as exact (1.2e-4 →
             // 6e-5 at n = 4).
             source.carries = plan.hasJoint[place] == 0;
-            if (plan.hasContact[place] == 0) source.lag = (0.5f * h) * source.acceleration;
+            if (!source.carries && plan.hasContact[place] == 0)
+                source.lag = (0.5f * h) * source.acceleration;
             source.linearFactor = 1.0f / (1.0f + h * info.linearDamping);
             source.angularFactor = 1.0f / (1.0f + h * info.angularDamping);
         }
@@ -213,6 +221,7 @@ void Rows::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t b
     ContactBlock& rows = blocks[block];
     ContactFeatures features;
     bool anyWarm = false;
+    rows.anyCold = 0;
     std::array<const Contact*, blockLanes> contacts{};
     for (std::uint32_t lane = 0; lane < blockLanes; ++lane) {
         const std::uint32_t at = block * blockLanes + lane;
@@ -230,6 +239,8 @@ void Rows::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t b
         rows.motionB[lane] = static_cast<std::int32_t>(contact.bodyB);
         rows.boundsA[lane] = static_cast<std::int32_t>(contact.placeA);
         rows.boundsB[lane] = static_cast<std::int32_t>(contact.placeB);
+        rows.cold[lane] = contact.began != 0 && mayTakeMore(plan, places) ? -1 : 0;
+        rows.anyCold |= rows.cold[lane];
         features.friction |= contact.row.friction > 0.0f;
         features.restitution |= contact.row.restitution > 0.0f;
         features.tangentSpeed |= contact.row.tangentSpeed != 0.0f;
@@ -242,6 +253,7 @@ void Rows::makeBlock(const Plan& plan, const SolverWorld& world, std::uint32_t b
             contacts, rows.points[i], [i](const Contact& c) -> auto& { return c.points[i]; });
     }
     rows.anyWarm = anyWarm ? -1 : 0;
+    features.cold = rows.anyCold != 0;
     blockFeatures[block] = features;
 }
 
@@ -296,6 +308,12 @@ bool Rows::allKept(std::uint32_t block) const {
 void Rows::settleContacts(const Plan& plan, const SolverWorld& world, const ContactKernels& kernels,
                           Range range, std::vector<ContactHit>& hits) {
     if (range.begin == range.end) return;
+    for (std::uint32_t block = range.begin; block < range.end; ++block) {
+        if (blocks[block].anyCold == 0) continue;
+        std::fill_n(blocks[block].cold, blockLanes, 0);
+        blocks[block].anyCold = 0;
+        blockFeatures[block].cold = false;
+    }
     if (world.planned) kernels.strain(&blocks[range.begin], range.end - range.begin);
     if (!kernels.settle(&blocks[range.begin], range.end - range.begin)) return;
     for (std::uint32_t at = range.begin * blockLanes; at < range.end * blockLanes; ++at) {

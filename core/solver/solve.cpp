@@ -32,6 +32,7 @@ struct Job {
                 world.stepSeconds,
                 batch.substeps,
                 rampShare(batch.ramp),
+                batch.rests,
                 features,
                 contactKernels(simd),
                 revoluteKernels(simd)};

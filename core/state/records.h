@@ -66,7 +66,7 @@ struct BodyMotion {
     Vec2 velocity;          ///< m/s, of the centre of mass
     float angularVelocity;  ///< rad/s
     std::uint16_t rest;     ///< quiet ticks so far; `asleepBit` set while asleep
-    std::uint8_t effort;    ///< level that the next step takes (core/solver/effort.h)
+    std::uint8_t effort;    ///< that the next step takes, see `EffortPlan::packed`
     std::int8_t calm;       ///< steps for which a lower level would have done; < 0: a higher one
 
     static constexpr std::uint16_t asleepBit = 0x8000u;

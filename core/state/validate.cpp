@@ -253,7 +253,7 @@ std::string faultOf(const BodyMotion& m) {
     if (!within(m.velocity.x, -maxSpeed, maxSpeed)) return "velocity.x: out of range";
     if (!within(m.velocity.y, -maxSpeed, maxSpeed)) return "velocity.y: out of range";
     if (!within(m.angularVelocity, -maxSpeed, maxSpeed)) return "angularVelocity: out of range";
-    if (m.effort > highestEffort) return "effort: out of range";
+    if (levelOf(m.effort) > highestEffort) return "effort: out of range";
     if (rampOf(m.calm) > highestRamp || m.calm >= calmSteps) return "calm: out of range";
     return {};
 }

@@ -243,7 +243,9 @@ void Collide::collect(const std::vector<Findings>& findings) {
             m_acc.inLanes[contact] = endedInLane;
         }
         for (const auto& [candidate, contact] : f.begun) {
-            m_acc.candidates[candidate].contact = m_world.addContact(contact);
+            const std::uint32_t place = m_world.addContact(contact);
+            m_acc.candidates[candidate].contact = place;
+            m_world.begun.push_back(place);
             events.begins.push_back(m_world.changeOf(contact));
         }
     }

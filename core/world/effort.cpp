@@ -30,8 +30,8 @@ class BatchEffort {
           m_rows(world.accelerators.rows),
           m_batch(batch) {
         const float h = world.state.info().stepSeconds / static_cast<float>(batch.substeps);
-        const RowFrequency frequency = rowFrequency(batch.substeps);
-        m_contactFloor = softFloor(frequency.contact, h);
+        const RowFrequency frequency = rowFrequency(batch.substeps, batch.rests);
+        m_contactFloor = softFloor(frequency.contact * rampShare(batch.ramp), h);
         m_jointFloor = softFloor(frequency.joint * rampShare(batch.ramp), h);
     }
 
@@ -47,6 +47,7 @@ class BatchEffort {
     [[nodiscard]] float mostStrain() const;
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
     [[nodiscard]] bool rests(std::uint32_t body) const;
+    [[nodiscard]] EffortRange rangeOf(std::uint32_t island, bool rests) const;
     [[nodiscard]] bool stays(float strain) const;
     void gather(std::optional<float> strain);
     void rescale() const;
@@ -149,11 +150,11 @@ void BatchEffort::gather(std::optional<float> strain) {
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island = {strain.value_or(0.0f), calmSteps, m_plan.jointed[body] == 0, {}};
+            island = {strain.value_or(0.0f), calmSteps, true, {}};
         }
         const BodyMotion& motion = m_world.state.motions[body];
         // A body that was lifted to the batch's level by others has not been calm there.
-        const bool there = motion.effort == m_batch.effort;
+        const bool there = levelOf(motion.effort) == m_batch.effort;
         const std::int8_t calm = there ? motion.calm : std::min(motion.calm, std::int8_t{0});
         island.calm = std::min(island.calm, calm);
         island.rests = island.rests && rests(body);
@@ -165,47 +166,90 @@ void BatchEffort::gather(std::optional<float> strain) {
     });
 }
 
-/// Whether a giant that is strained so stays as it is, which needs no look at its bodies.
+EffortRange BatchEffort::rangeOf(std::uint32_t island, bool rests) const {
+    const bool jointed = m_plan.jointed[island] != 0;
+    return {rests && !jointed ? restingEffort : standardEffort,
+            affordableEffort(m_plan.constraintsOf[island]), rests, jointed};
+}
+
+/// Whether a giant that is strained so stays as it is, so that nothing is to be written.
 bool BatchEffort::stays(float strain) const {
-    const EffortRange widest{restingEffort, highestEffort};
-    if (!m_batch.giant || !m_batch.still || m_batch.ramp > 0 || m_batch.effort < standardEffort ||
-        isCalm(m_batch.effort, strain, widest)) {
-        return false;
+    if (!m_batch.giant || !m_batch.still) return false;
+    bool all = true;
+    std::uint32_t island = none;
+    for (std::uint32_t p = m_batch.firstPlace; p < m_batch.endPlace && (all || island == none);
+         ++p) {
+        const std::uint32_t body = m_plan.bodyOfPlace[p];
+        if (m_world.activity[body] != movesNow) continue;
+        island = m_plan.islandOf[body];
+        all = all && rests(body);
     }
-    const EffortRange range{restingEffort, affordableEffort(m_batch.constraints)};
-    const EffortPlan next = planEffort({m_batch.effort, 0}, strain, range);
-    return next.level == m_batch.effort && next.calm == 0;
+    const EffortPlan now{m_batch.effort, 0, m_batch.rests};
+    const EffortPlan next = planEffort(now, strain, rangeOf(island, all));
+    return next.packed() == now.packed() && next.calm == 0 && m_batch.ramp == 0;
 }
 
 bool BatchEffort::decide() {
     const float most = mostStrain();
     if (stays(most)) return false;
     // Where every island is as calm as the one that is strained most, none needs a closer look.
-    const EffortRange widest{restingEffort, highestEffort};
+    const EffortRange widest{restingEffort, highestEffort, m_batch.rests};
     const bool alike = m_batch.giant || (m_batch.ramp == 0 && isCalm(m_batch.effort, most, widest));
     gather(alike ? std::optional(most) : std::nullopt);
-    bool changes = false, still = true;
+    const EffortPlan now{m_batch.effort, 0, m_batch.rests};
+    bool changes = false, scales = false, still = true;
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            const EffortRange range{island.rests ? restingEffort : standardEffort,
-                                    affordableEffort(m_plan.constraintsOf[body]),
-                                    m_plan.jointed[body] != 0};
-            island.next = planEffort({m_batch.effort, island.calm}, island.strain, range);
-            changes |= island.next.level != m_batch.effort;
-            still = still && island.next.level == m_batch.effort && island.next.calm == 0;
+            island.next = planEffort({now.level, island.calm, now.rests}, island.strain,
+                                     rangeOf(body, island.rests));
+            scales |= island.next.level != now.level;
+            changes |= island.next.packed() != now.packed();
+            still = still && island.next.packed() == now.packed() && island.next.calm == 0;
         }
         BodyMotion& motion = m_world.state.motions[body];
-        motion.effort = island.next.level;
+        motion.effort = island.next.packed();
         motion.calm = island.next.calm;
     });
     m_batch.still = still;
     if (m_batch.ramp > 0) --m_batch.ramp;
-    if (changes) rescale();
+    if (scales) rescale();
     return changes;
 }
 
+/// The level that a contact asks for that begins in this step.
+std::uint8_t effortOfBeginning(const World::Data& world, const Contact& contact) {
+    const WorldInfo& info = world.state.info();
+    const BodyMotion& a = world.state.motions[contact.bodyA];
+    const BodyMotion& b = world.state.motions[contact.bodyB];
+    const float approach = dot(contact.normal(), a.velocity - b.velocity);
+    const std::vector<float>& reach = world.accelerators.shapes.reach;
+    const float most = info.penetrationNeed > 0.0f
+                           ? info.penetrationNeed
+                           : visualTolerance(minOf(reach[contact.bodyA], reach[contact.bodyB]));
+    const float strain =
+        strainOfBeginning(contact.inverseMassA, contact.inverseMassB, approach,
+                          length(info.gravity), info.stepSeconds, 1.0f / most, standardEffort);
+    return std::min(neededEffort(standardEffort, strain), highestEffort);
+}
+
 }  // namespace
+
+std::vector<std::uint8_t> World::Data::effortsNow() const {
+    std::vector<std::uint8_t> efforts;
+    efforts.reserve(state.motions.size());
+    for (const BodyMotion& motion : state.motions) efforts.push_back(motion.effort);
+    for (const std::uint32_t place : begun) {
+        const Contact& contact = accelerators.contacts[place];
+        const std::uint8_t needed = effortOfBeginning(*this, contact);
+        for (const std::uint32_t body : {contact.bodyA, contact.bodyB}) {
+            const EffortPlan raised{std::max(levelOf(efforts[body]), needed), 0,
+                                    restsAt(efforts[body])};
+            efforts[body] = raised.packed();
+        }
+    }
+    return efforts;
+}
 
 void World::Data::planEfforts(Executor* executor) {
     if (!state.info().planned()) return;

@@ -59,6 +59,8 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     solve(rows, plan, world, traitsOf(state.info().solver()), with.simd, executor, events.hits,
           timer);
     if (!accelerators.rowsHold) accelerators.rowStamps.assign(rows.blockCount(), stamp);
+    for (const std::uint32_t contact : begun) accelerators.contacts[contact].began = 0;
+    begun.clear();
     const Moved moved = finish(rows, plan, world, executor);  // rows → motions
     planEfforts(executor);  // rows → levels of effort, impulses that fit them
     for (const std::uint32_t body : moved.broken) {
@@ -179,12 +181,9 @@ void World::Data::updatePlan(Executor* executor) {
         std::uint32_t substeps = state.info().substeps;
         if (substeps == 0 && !state.info().planned()) substeps = substepsOf(standardEffort);
         if (state.info().planned()) {
-            efforts.reserve(state.motions.size());
+            efforts = effortsNow();
             ramps.reserve(state.motions.size());
-            for (const BodyMotion& motion : state.motions) {
-                efforts.push_back(motion.effort);
-                ramps.push_back(rampOf(motion.calm));
-            }
+            for (const BodyMotion& motion : state.motions) ramps.push_back(rampOf(motion.calm));
         }
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
                  static_cast<std::uint32_t>(state.bodies.size()), planLimits,

@@ -150,6 +150,7 @@ struct World::Data : Carried {
     std::vector<std::uint8_t> removed;  // by body; empty: none
     std::vector<std::uint8_t> removedJoints;
 
+    std::vector<std::uint32_t> begun;         // contacts, by place
     std::vector<IslandEffort> islandEfforts;  // by body; means nothing but of planned steps
 
     // access.cpp
@@ -208,6 +209,8 @@ struct World::Data : Carried {
     // effort.cpp
     /// From the rows of this step, the levels of the next one.
     void planEfforts(Executor* executor);
+    /// By body, those of this step: what the state says, and more where contacts begin.
+    [[nodiscard]] std::vector<std::uint8_t> effortsNow() const;
 
     // continuous.cpp
     /// Puts fast bodies back to where on their way they met a static or kinematic one.
