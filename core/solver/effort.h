@@ -43,7 +43,7 @@ struct RowFrequency {
     float contact;  ///< against static and kinematic bodies twice that
     float joint;
 };
-RowFrequency rowFrequency(std::uint32_t substeps, bool rests);
+RowFrequency rowFrequency(std::uint32_t substeps, bool rests = false);
 
 /// Violation at rest for an impulse that changes a row's velocity by 1 m/s a substep of `h`
 /// seconds: m. `frequency`: share of the substep rate.
