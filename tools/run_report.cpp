@@ -37,6 +37,24 @@ std::string reasonOf(const IslandView& island, const StepLayout& layout) {
            most;
 }
 
+/// Why an island got its substeps.
+std::string effortOf(const IslandView& island) {
+    if (island.strain == 0.0f) return std::to_string(island.substeps);
+    return std::to_string(island.substeps) + (island.rests ? ", at rest" : "") + ": a " +
+           (island.strainedJoint ? "joint" : "contact") + " gives way by " +
+           number(static_cast<double>(island.strain)) + " of the need";
+}
+
+/// What a budget did not reach; empty: nothing.
+std::string sentenceOf(const TooStiff& stiff) {
+    if (stiff.islands == 0) return {};
+    return std::to_string(stiff.islands) + " island" + (stiff.islands == 1 ? "" : "s") +
+           " too stiff for the budget: that of body " + std::to_string(stiff.body) +
+           " has n = " + std::to_string(stiff.substeps) + ", a " +
+           (stiff.joint ? "joint" : "contact") + " of it needs " +
+           std::to_string(stiff.neededSubsteps);
+}
+
 Json explanation(const StepLayout& layout) {
     Json islands = Json::array();
     for (std::size_t i = 0; i < std::min(shownIslands, layout.islands.size()); ++i) {
@@ -50,6 +68,10 @@ Json explanation(const StepLayout& layout) {
                            {"all_threads", island.giant},
                            {"batch", island.batch},
                            {"batch_constraints", island.batchConstraints},
+                           {"substeps", island.substeps},
+                           {"at_rest", island.rests},
+                           {"strain", island.strain},
+                           {"strained_row", island.strainedJoint ? "joint" : "contact"},
                            {"why", reasonOf(island, layout)}});
     }
     return {{"bytes_touched", layout.bytesTouched},
@@ -139,6 +161,12 @@ Json RunReport::asJson() const {
     json["colours"] = inside->mostColours;
     json["overflow_share"] = share(inside->overflow, inside->constraints);
     json["bucket_share"] = share(inside->inBuckets, inside->constraints);
+    const TooStiff& stiff = inside->last.tooStiff;
+    json["too_stiff"] = {{"islands", stiff.islands},
+                         {"lowest_body", stiff.body},
+                         {"substeps", stiff.substeps},
+                         {"needed_substeps", stiff.neededSubsteps},
+                         {"row", stiff.joint ? "joint" : "contact"}};
     json["waited_ms"] = milliseconds(inside->waited);
     if (inside->layout) json["explain"] = explanation(*inside->layout);
     json["state"] = {{"bytes_a_body", sizeof(BodyMotion)},
@@ -196,6 +224,8 @@ void RunReport::printInside() const {
         in.last.islands, in.last.batches, in.mostColours,
         number(100.0 * share(in.inBuckets, in.constraints)).c_str(),
         number(100.0 * share(in.overflow, in.constraints)).c_str());
+    const std::string stiff = sentenceOf(in.last.tooStiff);
+    if (!stiff.empty()) std::printf("effort       %s\n", stiff.c_str());
     std::printf("waited, ms  %s (by thread, in all)\n", waits.c_str());
     if (in.layout) printLayout();
     std::printf(
@@ -231,13 +261,14 @@ void RunReport::printLayout() const {
             "one thread\n",
             layout.giants, layout.giants == 1 ? "" : "s", layout.sharedColours, layout.colours);
     if (layout.islands.empty()) return;
-    Table islands({"  island", "bodies", "contacts", "joints", "colours", "overflow", "solved by"});
+    Table islands({"  island", "bodies", "contacts", "joints", "colours", "overflow", "substeps",
+                   "solved by"});
     for (std::size_t i = 0; i < std::min(shownIslands, layout.islands.size()); ++i) {
         const IslandView& island = layout.islands[i];
         islands.add({"  of body " + std::to_string(island.body), std::to_string(island.bodies),
                      std::to_string(island.contacts), std::to_string(island.joints),
                      std::to_string(island.colours), std::to_string(island.overflow),
-                     reasonOf(island, layout)});
+                     effortOf(island), reasonOf(island, layout)});
     }
     islands.print();
     if (layout.islands.size() > shownIslands)

@@ -16,6 +16,10 @@ namespace {
 // An island whose bodies are all slower than this rests. Twice what lets bodies fall asleep.
 constexpr float restSpeed = 0.1f;  // m/s, of any point
 
+Strain larger(Strain a, Strain b) {
+    return b.most > a.most ? b : a;
+}
+
 float mostOf(const float (&lanes)[blockLanes], float most) {
     for (const float lane : lanes) most = maxOf(most, lane);
     return most;
@@ -44,12 +48,12 @@ class BatchEffort {
     void overBodies(F&& f) const;
     template <class F>
     void overRows(F&& f) const;
-    [[nodiscard]] float mostStrain() const;
+    [[nodiscard]] Strain mostStrain() const;
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
     [[nodiscard]] bool rests(std::uint32_t body) const;
     [[nodiscard]] EffortRange rangeOf(std::uint32_t island, bool rests) const;
-    [[nodiscard]] bool stays(float strain) const;
-    void gather(std::optional<float> strain);
+    [[nodiscard]] bool stays(Strain strain);
+    void gather(std::optional<Strain> strain);
     void rescale() const;
 
     World::Data& m_world;
@@ -75,23 +79,23 @@ void BatchEffort::overRows(F&& f) const {
         const ContactBlock& rows = m_rows.blocks[block];
         for (std::size_t i = 0; i < blockLanes; ++i) {
             if (rows.strain[i] == 0.0f) continue;
-            f(rows.bodyA[i], rows.bodyB[i], m_contactFloor * rows.strain[i]);
+            f(rows.bodyA[i], rows.bodyB[i], Strain{m_contactFloor * rows.strain[i], false});
         }
     }
     for (std::uint32_t at = m_batch.firstRevoluteBlock; at < m_batch.endRevoluteBlock; ++at) {
         const RevoluteBlock& rows = m_rows.revolutes[at];
         for (std::size_t i = 0; i < blockLanes; ++i) {
             if (rows.strain[i] == 0.0f) continue;
-            f(rows.bodyA[i], rows.bodyB[i], m_jointFloor * std::sqrt(rows.strain[i]));
+            f(rows.bodyA[i], rows.bodyB[i], Strain{m_jointFloor * std::sqrt(rows.strain[i]), true});
         }
     }
     for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
         const JointRow& row = m_rows.joints[i];
-        f(row.bodyA, row.bodyB, m_jointFloor * row.strain);
+        f(row.bodyA, row.bodyB, Strain{m_jointFloor * row.strain, true});
     }
 }
 
-float BatchEffort::mostStrain() const {
+Strain BatchEffort::mostStrain() const {
     float contacts = 0.0f, revolutes = 0.0f, joints = 0.0f;
     for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
         contacts = mostOf(m_rows.blocks[block].strain, contacts);
@@ -102,7 +106,8 @@ float BatchEffort::mostStrain() const {
     for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
         joints = maxOf(joints, m_rows.joints[i].strain);
     }
-    return maxOf(m_contactFloor * contacts, m_jointFloor * maxOf(std::sqrt(revolutes), joints));
+    return larger({m_contactFloor * contacts, false},
+                  {m_jointFloor * maxOf(std::sqrt(revolutes), joints), true});
 }
 
 IslandEffort& BatchEffort::islandOf(BodyPlace a, BodyPlace b) const {
@@ -146,11 +151,11 @@ bool BatchEffort::rests(std::uint32_t body) const {
 }
 
 /// What each island brings into the decision; `strain` where it is known to be that of all.
-void BatchEffort::gather(std::optional<float> strain) {
+void BatchEffort::gather(std::optional<Strain> strain) {
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island = {strain.value_or(0.0f), calmSteps, true, {}};
+            island = {strain.value_or(Strain{}), calmSteps, true, {}};
         }
         const BodyMotion& motion = m_world.state.motions[body];
         // A body that was lifted to the batch's level by others has not been calm there.
@@ -160,9 +165,9 @@ void BatchEffort::gather(std::optional<float> strain) {
         island.rests = island.rests && rests(body);
     });
     if (strain) return;
-    overRows([&](BodyPlace a, BodyPlace b, float ofRow) {
+    overRows([&](BodyPlace a, BodyPlace b, Strain ofRow) {
         IslandEffort& island = islandOf(a, b);
-        island.strain = maxOf(island.strain, ofRow);
+        island.strain = larger(island.strain, ofRow);
     });
 }
 
@@ -173,7 +178,7 @@ EffortRange BatchEffort::rangeOf(std::uint32_t island, bool rests) const {
 }
 
 /// Whether a giant that is strained so stays as it is, so that nothing is to be written.
-bool BatchEffort::stays(float strain) const {
+bool BatchEffort::stays(Strain strain) {
     if (!m_batch.giant || !m_batch.still) return false;
     bool all = true;
     std::uint32_t island = none;
@@ -185,23 +190,25 @@ bool BatchEffort::stays(float strain) const {
         all = all && rests(body);
     }
     const EffortPlan now{m_batch.effort, 0, m_batch.rests};
-    const EffortPlan next = planEffort(now, strain, rangeOf(island, all));
+    const EffortPlan next = planEffort(now, strain.most, rangeOf(island, all));
+    m_world.islandEfforts[island].strain = strain;
     return next.packed() == now.packed() && next.calm == 0 && m_batch.ramp == 0;
 }
 
 bool BatchEffort::decide() {
-    const float most = mostStrain();
+    const Strain most = mostStrain();
     if (stays(most)) return false;
     // Where every island is as calm as the one that is strained most, none needs a closer look.
     const EffortRange widest{restingEffort, highestEffort, m_batch.rests};
-    const bool alike = m_batch.giant || (m_batch.ramp == 0 && isCalm(m_batch.effort, most, widest));
+    const bool alike =
+        m_batch.giant || (m_batch.ramp == 0 && isCalm(m_batch.effort, most.most, widest));
     gather(alike ? std::optional(most) : std::nullopt);
     const EffortPlan now{m_batch.effort, 0, m_batch.rests};
     bool changes = false, scales = false, still = true;
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island.next = planEffort({now.level, island.calm, now.rests}, island.strain,
+            island.next = planEffort({now.level, island.calm, now.rests}, island.strain.most,
                                      rangeOf(body, island.rests));
             scales |= island.next.level != now.level;
             changes |= island.next.packed() != now.packed();
@@ -262,10 +269,29 @@ void World::Data::planEfforts(Executor* executor) {
         }
     });
     for (const std::uint8_t batch : changes) accelerators.linksStale |= batch != 0;
+    reportTooStiff();
     // Who touches nothing starts anew where it lands.
     for (const std::uint32_t body : plan.freeBodies) {
         state.motions[body].effort = standardEffort;
         state.motions[body].calm = 0;
+    }
+}
+
+/// Islands whose budget does not reach what they need, for people.
+void World::Data::reportTooStiff() {
+    const Plan& plan = accelerators.plan;
+    for (const std::uint32_t body : plan.awake) {
+        if (plan.islandOf[body] != body || plan.constraintsOf[body] == 0) continue;
+        const Strain& strain = islandEfforts[body].strain;
+        const std::uint8_t level = levelOf(state.motions[body].effort);
+        if (!(strain.most > 1.0f) || level < affordableEffort(plan.constraintsOf[body])) continue;
+        ++report.tooStiff.islands;
+        const std::uint32_t needed = substepsOf(neededEffort(level, strain.most));
+        if (needed <= report.tooStiff.neededSubsteps) continue;
+        report.tooStiff.body = state.bodies[body].id;
+        report.tooStiff.substeps = substepsOf(level);
+        report.tooStiff.neededSubsteps = needed;
+        report.tooStiff.joint = strain.joint;
     }
 }
 

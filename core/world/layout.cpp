@@ -65,6 +65,12 @@ StepLayout World::stepLayout() const {
             view.giant = batch.giant;
             view.batch = b;
             view.batchConstraints = batch.constraints;
+            view.substeps = batch.substeps;
+            view.rests = batch.rests;
+            if (m_data->state.info().planned() && body < m_data->islandEfforts.size()) {
+                view.strain = m_data->islandEfforts[body].strain.most;
+                view.strainedJoint = m_data->islandEfforts[body].strain.joint;
+            }
         }
         if (!batch.giant) continue;
         ++layout.giants;

@@ -48,6 +48,17 @@ enum class Stage : std::uint8_t {
 };
 std::string_view nameOf(Stage stage);
 
+/// Islands whose rows give way by more than the scene's need although they have all the substeps
+/// that they may take: where substeps are planned.
+struct TooStiff {
+    std::uint32_t islands = 0;
+    // Of the one that lacks most.
+    BodyId body = 0;  ///< the lowest of its bodies
+    std::uint32_t substeps = 0;
+    std::uint32_t neededSubsteps = 0;  ///< at which its worst row would be within the need
+    bool joint = false;                ///< whether that row is a joint's, not a contact's
+};
+
 /// What the last step did: for people and charts, never state.
 struct StepReport {
     std::uint32_t awakeBodies = 0;
@@ -60,6 +71,7 @@ struct StepReport {
     std::uint32_t colours = 0;    ///< most in any batch
     std::uint32_t overflow = 0;   ///< constraints beyond the last colour
     std::uint32_t inBuckets = 0;  ///< contacts of hubs, solved in buckets
+    TooStiff tooStiff;
     std::array<std::uint64_t, static_cast<std::size_t>(Stage::Count)> nanoseconds{};
 };
 
@@ -90,6 +102,13 @@ struct IslandView {
     bool giant = false;
     std::uint32_t batch = 0;             ///< its place among the step's batches
     std::uint32_t batchConstraints = 0;  ///< of all islands of the batch
+    std::uint32_t substeps = 0;
+    // Where substeps are planned:
+    bool rests = false;  ///< nothing in it moves much: its contacts are stiffer
+    /// Of what the scene's need allows, how much its worst row gives way at rest; an upper bound
+    /// where it is far below 1.
+    float strain = 0.0f;
+    bool strainedJoint = false;  ///< whether that row is a joint's
 };
 
 /// How the last step was laid out: what it chose follows from counts alone, never from threads.

@@ -108,9 +108,15 @@ struct Carried {
     void become(const Carried& other, bool related);  // carried.cpp
 };
 
+/// How much an island's most strained row gives way, in what it may.
+struct Strain {
+    float most = 0;
+    bool joint = false;  // of a joint, not of a contact
+};
+
 /// What the last step said of an island; of its lowest body.
 struct IslandEffort {
-    float strain = 0;
+    Strain strain;
     std::int8_t calm = 0;  // the lowest of its bodies
     bool rests = false;    // none of its bodies moves much, and it has no joint
     EffortPlan next;
@@ -209,6 +215,7 @@ struct World::Data : Carried {
     // effort.cpp
     /// From the rows of this step, the levels of the next one.
     void planEfforts(Executor* executor);
+    void reportTooStiff();
     /// By body, those of this step: what the state says, and more where contacts begin.
     [[nodiscard]] std::vector<std::uint8_t> effortsNow() const;
 
