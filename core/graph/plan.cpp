@@ -177,8 +177,10 @@ void Builder::colourBatch(std::uint32_t batch) {
         layOut(batch, places, colours, hubs);
         return;
     }
-    hubs = findHubs(std::span<const ConstraintBodies>(local).subspan(joints),
-                    b.endPlace - b.firstPlace, limits.hubDegree);
+    if (demand.hubs) {
+        hubs = findHubs(std::span<const ConstraintBodies>(local).subspan(joints),
+                        b.endPlace - b.firstPlace, limits.hubDegree);
+    }
     for (HubRun& run : hubs) {
         run.hub += first;
         for (std::uint32_t& i : run.constraints) {
@@ -215,7 +217,8 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
     const std::uint32_t begin = linkStart[batch];
     const auto kindOf = [&](std::uint32_t link, std::uint8_t colour) {
         if (link >= plan.jointLinks) return ContactLane;
-        return plan.links[link].revolute && !isSerial(colour) ? RevoluteLane : Joint;
+        const bool lanes = demand.pinLanes || !isSerial(colour);
+        return plan.links[link].revolute && lanes ? RevoluteLane : Joint;
     };
     std::array<std::array<std::uint32_t, 3>, colourCount> counts{};
     for (std::uint32_t i = 0; i < colours.size(); ++i) {
@@ -255,7 +258,9 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
         revolutes.grow(count[RevoluteLane]);
         plan.jointOrder.resize(plan.jointOrder.size() + count[Joint]);
         plan.jointPlaces.resize(plan.jointOrder.size());
-        if (isSerial(run.colour)) plan.overflow += count[Joint] + count[ContactLane];
+        if (isSerial(run.colour)) {
+            plan.overflow += count[Joint] + count[RevoluteLane] + count[ContactLane];
+        }
     }
     b.endColour = static_cast<std::uint32_t>(plan.runs.size());
     b.endBlock = contacts.blocks();
@@ -380,6 +385,11 @@ void makePlan(Plan& plan, std::vector<Link>&& links, std::uint32_t jointLinks,
         plan.hasJoint.resize(plan.bodyOfPlace.size(), 0);
         builder.colourBatch(batch);
         plan.batches[batch].endCopy = static_cast<std::uint32_t>(plan.bodyOfPlace.size());
+    }
+    plan.incidence = {};
+    if (demand.incidence) {
+        plan.incidence = incidenceOf(plan.jointPlaces, plan.revolutePlaces, plan.lanePlaces,
+                                     static_cast<std::uint32_t>(plan.bodyOfPlace.size()));
     }
 }
 

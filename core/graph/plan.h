@@ -10,6 +10,7 @@
 
 #include "core/graph/coloring.h"
 #include "core/graph/hubs.h"
+#include "core/graph/incidence.h"
 #include "core/graph/islands.h"
 #include "core/state/records.h"
 
@@ -76,6 +77,7 @@ struct Plan {
     std::vector<std::uint32_t> constraintsOf;      ///< lowest body of an island → constraints
     std::vector<std::uint8_t> jointed;  ///< lowest body of an island → whether it has a joint
     std::vector<std::uint8_t> colourOfLink;
+    Incidence incidence;  ///< where `PlanDemand` asks for it
     std::uint32_t islands = 0;
     std::uint32_t colours = 0;     ///< most in any batch; all runs of hubs have two
     std::uint32_t overflow = 0;    ///< constraints in overflow
@@ -102,6 +104,9 @@ struct PlanDemand {
     // By body, where `substeps` is 0.
     std::span<const std::uint8_t> efforts{};
     std::span<const std::uint8_t> ramps{};
+    bool hubs = true;       ///< buckets for them; else what finds no colour goes to the overflow
+    bool pinLanes = false;  ///< revolutes fill lanes in the overflow too
+    bool incidence = false;
 };
 
 /// Makes the plan. `links` and `awake` are moved in; bodies that are not awake are read by the
