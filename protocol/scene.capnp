@@ -89,6 +89,10 @@ enum JointKind {
 enum Method {
   softStep @0;    # coloured Gauss-Seidel with soft rows and substeps: the product
   sequential @1;  # the same in key order, one constraint after another
+  jacobi @2;      # the same with all constraints of a sweep side by side
+  jacobiSplit @3; # likewise, each with its share of its bodies' mass
+  pgs @4;         # projected Gauss-Seidel over one step, errors in the velocity rows
+  pgsNgs @5;      # the same without errors in velocities; sweeps over positions follow
 }
 
 struct Joint {

@@ -1,8 +1,11 @@
 #include "core/joint/joint_row.h"
 
+#include <array>
+
 #include "core/joint/parts.h"
 #include "core/math/angle_lanes.h"
 #include "core/math/finite.h"
+#include "core/math/trig.h"
 
 namespace huestep {
 
@@ -246,6 +249,29 @@ void scale(JointImpulses& impulses, float by) {
     impulses.motor *= by;
     impulses.lower *= by;
     impulses.upper *= by;
+}
+
+void correctJoint(SolverBody* bodies, const JointRow& row) {
+    if (row.kind == JointKind::Mouse) return;
+    std::array<SolverBody, 2> moved{bodies[readPlace(row.bodyA)], bodies[readPlace(row.bodyB)]};
+    for (SolverBody& body : moved) body.vx = body.vy = body.w = 0.0f;
+    // The joint's own parts, with what they would do to velocities as displacements.
+    JointRow rigid = row;
+    rigid.bodyA = row.bodyA < 0 ? ~BodyPlace{0} : BodyPlace{0};
+    rigid.bodyB = row.bodyB < 0 ? ~BodyPlace{1} : BodyPlace{1};
+    rigid.impulses = {};
+    rigid.spring = {0.0f, 0.0f, 0.0f};
+    rigid.flags &= ~JointInfo::motor;
+    solveJoint(moved.data(), rigid, correctionPass);
+    const auto displace = [](SolverBody& body, const SolverBody& by) {
+        body.dx += by.vx;
+        body.dy += by.vy;
+        const Rotation q = compose(cayley(0.5f * by.w), Rotation{body.dc, body.ds});
+        body.dc = q.c;
+        body.ds = q.s;
+    };
+    if (row.bodyA >= 0) displace(bodies[row.bodyA], moved[0]);
+    if (row.bodyB >= 0) displace(bodies[row.bodyB], moved[1]);
 }
 
 JointImpulses storedImpulses(const JointRow& row) {

@@ -49,6 +49,15 @@ float strainOf(const JointRow& row);
 /// Impulses of substeps of another length.
 void scale(JointImpulses& impulses, float by);
 
+/// A pass over displacements instead of velocities: the whole error of rigid parts and violated
+/// limits, over one unit of time.
+inline constexpr JointPass correctionPass{1.0f, 1.0f, {1.0f, 1.0f, 0.0f}};
+
+/// Moves the bodies, as far as their deltas have them by now, to where the joint's rigid parts and
+/// limits hold: nonlinear Gauss-Seidel, P = −K⁻¹ C with the K of where they are. Velocities and
+/// impulses stay; springs, motors and mouse joints have nothing to hold.
+void correctJoint(SolverBody* bodies, const JointRow& row);
+
 /// Turns impulses into canonical form for the state; a non-finite one becomes 0.
 JointImpulses storedImpulses(const JointRow& row);
 

@@ -55,7 +55,8 @@ using RevoluteStrain = void (*)(const SolverBody* bodies, RevoluteBlock* blocks,
 
 struct RevoluteKernels {
     RevoluteKernel warmStart = nullptr;
-    RevoluteKernel solve = nullptr;  ///< with the pass's softness, or neutral in relax
+    RevoluteKernel solve = nullptr;    ///< with the pass's softness, or neutral in relax
+    RevoluteKernel correct = nullptr;  ///< moves bodies, see `correctJoint`
     RevoluteStrain strain = nullptr;
 };
 

@@ -105,14 +105,20 @@ HUESTEP_INLINE void solveLimit(AxisLanes<W>& axis, const std::int32_t* hasLimit,
     axis.apply(has, signs * (next - old));
 }
 
+template <int W>
+HUESTEP_INLINE LaneF<W> angleOfLanes(const RevoluteBlock& block, int lane, const DeltaLanes<W>& a,
+                                     const DeltaLanes<W>& b) {
+    const LaneF<W> c = a.dc * b.dc + a.ds * b.ds, s = a.dc * b.ds - a.ds * b.dc;
+    const LaneF<W> c0 = loadLanes<W>(block.angleC + lane), s0 = loadLanes<W>(block.angleS + lane);
+    return angleLanes<W>(c * c0 - s * s0, s * c0 + c * s0);
+}
+
 /// Spring, motor and limit, in this order.
 template <int W>
 HUESTEP_INLINE void solveAxis(PairLanes<W>& pair, RevoluteBlock& block, int lane,
                               const DeltaLanes<W>& a, const DeltaLanes<W>& b,
                               const JointPass& pass) {
-    const LaneF<W> c = a.dc * b.dc + a.ds * b.ds, s = a.dc * b.ds - a.ds * b.dc;
-    const LaneF<W> c0 = loadLanes<W>(block.angleC + lane), s0 = loadLanes<W>(block.angleS + lane);
-    const LaneF<W> angle = angleLanes<W>(c * c0 - s * s0, s * c0 + c * s0);
+    const LaneF<W> angle = angleOfLanes<W>(block, lane, a, b);
     AxisLanes<W> axis(pair);
     solveSpring<W>(axis, block, lane, angle);
     solveMotor<W>(axis, block, lane, pass.h);
@@ -122,38 +128,52 @@ HUESTEP_INLINE void solveAxis(PairLanes<W>& pair, RevoluteBlock& block, int lane
                   loadLanes<W>(block.upper + lane) - angle, pass);
 }
 
+/// Two points coincide: `PointPart` with where its anchors are by now.
+template <int W>
+struct PointLanes {
+    Anchors<W> r;
+    LaneF<W> errorX, errorY;  // m
+    LaneF<W> k11, k12, k22;   // 1/kg
+    LaneF<W> inverse;         // of the determinant; 0 where nothing moves
+
+    HUESTEP_INLINE PointLanes(const PairLanes<W>& pair, const RevoluteBlock& block, int lane,
+                              const DeltaLanes<W>& moveA, const DeltaLanes<W>& moveB)
+        : r(turned<W>(anchorsOf<W>(block, lane), moveA, moveB)) {
+        errorX = ((moveB.dx - moveA.dx) + loadLanes<W>(block.centersX + lane)) + (r.bx - r.ax);
+        errorY = ((moveB.dy - moveA.dy) + loadLanes<W>(block.centersY + lane)) + (r.by - r.ay);
+        const LaneF<W>& iA = pair.inverseInertiaA;
+        const LaneF<W>& iB = pair.inverseInertiaB;
+        const LaneF<W> m = pair.a.inverseMass + pair.b.inverseMass;
+        k11 = (m + iA * r.ay * r.ay) + iB * r.by * r.by;
+        k12 = -(iA * r.ax * r.ay) - iB * r.bx * r.by;
+        k22 = (m + iA * r.ax * r.ax) + iB * r.bx * r.bx;
+        const LaneF<W> determinant = k11 * k22 - k12 * k12;
+        const LaneF<W> zero = splat<W>(0.0f);
+        const LaneF<W> one = splat<W>(1.0f);
+        const auto regular = determinant > zero;
+        // Padding has no mass: one divides by 1 there and takes 0.
+        inverse = selectLanes(regular, one / selectLanes(regular, determinant, one), zero);
+    }
+    /// The impulse whose opposite makes the point move by (x, y).
+    HUESTEP_INLINE void impulseOf(const LaneF<W>& x, const LaneF<W>& y, LaneF<W>& px,
+                                  LaneF<W>& py) const {
+        px = inverse * (k22 * x - k12 * y);
+        py = inverse * (k11 * y - k12 * x);
+    }
+};
+
 template <int W>
 HUESTEP_INLINE void solveLanes(SolverBody* bodies, RevoluteBlock& block, int lane,
                                const JointPass& pass) {
     const DeltaLanes<W> moveA = gatherDeltas<W>(bodies, block.bodyA + lane);
     const DeltaLanes<W> moveB = gatherDeltas<W>(bodies, block.bodyB + lane);
-    const Anchors<W> r = turned<W>(anchorsOf<W>(block, lane), moveA, moveB);
     PairLanes<W> pair(bodies, block, lane);
+    const PointLanes<W> point(pair, block, lane, moveA, moveB);
     if (block.anyPart != 0) solveAxis<W>(pair, block, lane, moveA, moveB, pass);
-    const LaneF<W> errorX =
-        ((moveB.dx - moveA.dx) + loadLanes<W>(block.centersX + lane)) + (r.bx - r.ax);
-    const LaneF<W> errorY =
-        ((moveB.dy - moveA.dy) + loadLanes<W>(block.centersY + lane)) + (r.by - r.ay);
-    const LaneF<W>& iA = pair.inverseInertiaA;
-    const LaneF<W>& iB = pair.inverseInertiaB;
-    const LaneF<W> m = pair.a.inverseMass + pair.b.inverseMass;
-    const LaneF<W> k11 = (m + iA * r.ay * r.ay) + iB * r.by * r.by;
-    const LaneF<W> k12 = -(iA * r.ax * r.ay) - iB * r.bx * r.by;
-    const LaneF<W> k22 = (m + iA * r.ax * r.ax) + iB * r.bx * r.bx;
-    const LaneF<W> determinant = k11 * k22 - k12 * k12;
-    const LaneF<W> zero = splat<W>(0.0f);
-    const LaneF<W> one = splat<W>(1.0f);
-    const auto regular = determinant > zero;
-    // Padding has no mass: one divides by 1 there and takes 0.
-    const LaneF<W> inverse =
-        selectLanes(regular, one / selectLanes(regular, determinant, one), zero);
-    LaneF<W> x, y;
-    relativeVelocity<W>(pair, r, x, y);
+    LaneF<W> x, y, rigidX, rigidY;
+    relativeVelocity<W>(pair, point.r, x, y);
     const LaneF<W> biasRate = splat<W>(pass.soft.biasRate);
-    x = x + biasRate * errorX;
-    y = y + biasRate * errorY;
-    const LaneF<W> rigidX = inverse * (k22 * x - k12 * y);
-    const LaneF<W> rigidY = inverse * (k11 * y - k12 * x);
+    point.impulseOf(x + biasRate * point.errorX, y + biasRate * point.errorY, rigidX, rigidY);
     const LaneF<W> massScale = splat<W>(pass.soft.massScale);
     const LaneF<W> impulseScale = splat<W>(pass.soft.impulseScale);
     const LaneF<W> oldX = loadLanes<W>(block.impulseX + lane);
@@ -162,8 +182,40 @@ HUESTEP_INLINE void solveLanes(SolverBody* bodies, RevoluteBlock& block, int lan
     const LaneF<W> newY = (oldY - massScale * rigidY) - impulseScale * oldY;
     storeLanes<W>(block.impulseX + lane, newX);
     storeLanes<W>(block.impulseY + lane, newY);
-    applyImpulse<W>(pair, r, newX - oldX, newY - oldY);
+    applyImpulse<W>(pair, point.r, newX - oldX, newY - oldY);
     pair.store(bodies, block, lane);
+}
+
+/// Moves the bodies to where limits and point hold: the same rows, with displacements for
+/// velocities.
+template <int W>
+HUESTEP_INLINE void correctLanes(SolverBody* bodies, RevoluteBlock& block, int lane,
+                                 const JointPass&) {
+    DeltaLanes<W> moveA = gatherDeltas<W>(bodies, block.bodyA + lane);
+    DeltaLanes<W> moveB = gatherDeltas<W>(bodies, block.bodyB + lane);
+    PairLanes<W> pair(bodies, block, lane);
+    pair.a.vx = pair.a.vy = pair.a.w = splat<W>(0.0f);
+    pair.b.vx = pair.b.vy = pair.b.w = splat<W>(0.0f);
+    const PointLanes<W> point(pair, block, lane, moveA, moveB);
+    if (block.anyPart != 0) {
+        const LaneF<W> angle = angleOfLanes<W>(block, lane, moveA, moveB);
+        AxisLanes<W> axis(pair);
+        RevoluteBlock::Row lower{}, upper{};  // impulses of this pass alone
+        solveLimit<W>(axis, block.hasLimit, lower, lane, 1.0f,
+                      angle - loadLanes<W>(block.lower + lane), correctionPass);
+        solveLimit<W>(axis, block.hasLimit, upper, lane, -1.0f,
+                      loadLanes<W>(block.upper + lane) - angle, correctionPass);
+    }
+    LaneF<W> x, y, px, py;
+    relativeVelocity<W>(pair, point.r, x, y);
+    point.impulseOf(x + point.errorX, y + point.errorY, px, py);
+    const LaneF<W> zero = splat<W>(0.0f);
+    applyImpulse<W>(pair, point.r, zero - px, zero - py);
+    displace<W>(moveA, pair.a.vx, pair.a.vy, pair.a.w);
+    displace<W>(moveB, pair.b.vx, pair.b.vy, pair.b.w);
+    SolverBody trash;
+    scatterDeltas<W>(bodies, trash, block.bodyA + lane, moveA);
+    scatterDeltas<W>(bodies, trash, block.bodyB + lane, moveB);
 }
 
 /// `strainOf`, squared.
@@ -194,8 +246,9 @@ HUESTEP_INLINE void strainLanes(const SolverBody* bodies, RevoluteBlock& block, 
 #define HUESTEP_KERNELS(W, attributes)                               \
     HUESTEP_STRAIN(W, attributes)                                    \
     HUESTEP_PASS(warmStart, RevoluteBlock, JointPass, W, attributes) \
-    HUESTEP_PASS(solve, RevoluteBlock, JointPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes) RevoluteKernels{warmStart##W, solve##W, strain##W},
+    HUESTEP_PASS(solve, RevoluteBlock, JointPass, W, attributes)     \
+    HUESTEP_PASS(correct, RevoluteBlock, JointPass, W, attributes)
+#define HUESTEP_ENTRY(W, attributes) RevoluteKernels{warmStart##W, solve##W, correct##W, strain##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 

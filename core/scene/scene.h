@@ -208,10 +208,14 @@ struct Counters {
 /// How constraints are solved (core/solver/method.h). Part of a world's state, as every one of them
 /// gives another future.
 enum class Method : std::uint8_t {
-    SoftStep,    ///< coloured Gauss-Seidel with soft rows and substeps: the product
-    Sequential,  ///< the same in key order, one constraint after another
+    SoftStep,     ///< coloured Gauss-Seidel with soft rows and substeps: the product
+    Sequential,   ///< the same in key order, one constraint after another
+    Jacobi,       ///< the same with all constraints of a sweep side by side
+    JacobiSplit,  ///< likewise, each with its share of its bodies' mass
+    Pgs,          ///< projected Gauss-Seidel over one step, errors in the velocity rows (Baumgarte)
+    PgsNgs,       ///< the same without errors in velocities; sweeps over positions follow
 };
-inline constexpr Method lastMethod = Method::Sequential;
+inline constexpr Method lastMethod = Method::PgsNgs;
 
 /// How far a world may be off at rest, where its substeps are planned: m, 0 or [1e-6, 1]. 0 is
 /// *visual*: 5 mm, or 1 % of the smaller body if that is more.
@@ -230,7 +234,7 @@ struct Scene {
     std::uint32_t substeps = 0;
     Need need;
     Method method = Method::SoftStep;
-    bool sleep = true;                 ///< whether islands at rest fall asleep
+    bool sleep = true;  ///< whether islands at rest fall asleep
     std::vector<BodyDef> bodies;
     std::vector<JointDef> joints;
     std::optional<PlayerDef> players;  ///< without it, players may only watch

@@ -139,24 +139,27 @@ HUESTEP_INLINE PoseLanes<W> gatherPoses(const SolverPose* poses, const BodyPlace
     return p;
 }
 
-/// Where a lane's velocity goes: its body, or `trash` for a body that is never written.
-HUESTEP_INLINE float* velocityOf(SolverBody* bodies, SolverBody& trash, BodyPlace place) {
-    return place < 0 ? &trash.vx : &bodies[place].vx;
+/// Where four floats of a lane go: to its body at `offset`, or to `trash` for a body that is never
+/// written.
+template <int Offset>
+HUESTEP_INLINE float* fourOf(SolverBody* bodies, SolverBody& trash, BodyPlace place) {
+    return (place < 0 ? &trash.vx : &bodies[place].vx) + Offset;
 }
 
+template <int Offset>
 HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
                             const F4& vx, const F4& vy, const F4& w, const F4& mass) {
     const F4 xy0 = __builtin_shufflevector(vx, vy, 0, 4, 1, 5);
     const F4 xy1 = __builtin_shufflevector(vx, vy, 2, 6, 3, 7);
     const F4 wz0 = __builtin_shufflevector(w, mass, 0, 4, 1, 5);
     const F4 wz1 = __builtin_shufflevector(w, mass, 2, 6, 3, 7);
-    storeLanes<4>(velocityOf(bodies, trash, place[0]),
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[0]),
                   __builtin_shufflevector(xy0, wz0, 0, 1, 4, 5));
-    storeLanes<4>(velocityOf(bodies, trash, place[1]),
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[1]),
                   __builtin_shufflevector(xy0, wz0, 2, 3, 6, 7));
-    storeLanes<4>(velocityOf(bodies, trash, place[2]),
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[2]),
                   __builtin_shufflevector(xy1, wz1, 0, 1, 4, 5));
-    storeLanes<4>(velocityOf(bodies, trash, place[3]),
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[3]),
                   __builtin_shufflevector(xy1, wz1, 2, 3, 6, 7));
 }
 
@@ -167,6 +170,7 @@ HUESTEP_INLINE F4 highHalf(const F8& v) {
     return __builtin_shufflevector(v, v, 4, 5, 6, 7);
 }
 
+template <int Offset>
 HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
                             const F8& vx, const F8& vy, const F8& w, const F8& mass) {
     const F8 xy0 = __builtin_shufflevector(vx, vy, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -177,16 +181,17 @@ HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPla
     const F8 r1 = __builtin_shufflevector(xy0, wz0, 2, 3, 10, 11, 6, 7, 14, 15);
     const F8 r2 = __builtin_shufflevector(xy1, wz1, 0, 1, 8, 9, 4, 5, 12, 13);
     const F8 r3 = __builtin_shufflevector(xy1, wz1, 2, 3, 10, 11, 6, 7, 14, 15);
-    storeLanes<4>(velocityOf(bodies, trash, place[0]), lowHalf(r0));
-    storeLanes<4>(velocityOf(bodies, trash, place[1]), lowHalf(r1));
-    storeLanes<4>(velocityOf(bodies, trash, place[2]), lowHalf(r2));
-    storeLanes<4>(velocityOf(bodies, trash, place[3]), lowHalf(r3));
-    storeLanes<4>(velocityOf(bodies, trash, place[4]), highHalf(r0));
-    storeLanes<4>(velocityOf(bodies, trash, place[5]), highHalf(r1));
-    storeLanes<4>(velocityOf(bodies, trash, place[6]), highHalf(r2));
-    storeLanes<4>(velocityOf(bodies, trash, place[7]), highHalf(r3));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[0]), lowHalf(r0));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[1]), lowHalf(r1));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[2]), lowHalf(r2));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[3]), lowHalf(r3));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[4]), highHalf(r0));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[5]), highHalf(r1));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[6]), highHalf(r2));
+    storeLanes<4>(fourOf<Offset>(bodies, trash, place[7]), highHalf(r3));
 }
 
+template <int Offset>
 HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
                             const F16& vx, const F16& vy, const F16& w, const F16& mass) {
     const auto low = [](const F16& v) __attribute__((always_inline)) {
@@ -195,21 +200,50 @@ HUESTEP_INLINE void scatter(SolverBody* bodies, SolverBody& trash, const BodyPla
     const auto high = [](const F16& v) __attribute__((always_inline)) {
         return __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
     };
-    scatter(bodies, trash, place, low(vx), low(vy), low(w), low(mass));
-    scatter(bodies, trash, place + 8, high(vx), high(vy), high(w), high(mass));
+    scatter<Offset>(bodies, trash, place, low(vx), low(vy), low(w), low(mass));
+    scatter<Offset>(bodies, trash, place + 8, high(vx), high(vy), high(w), high(mass));
+}
+
+template <int W, int Offset>
+HUESTEP_INLINE void scatterFour(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
+                                const LaneF<W>& c0, const LaneF<W>& c1, const LaneF<W>& c2,
+                                const LaneF<W>& c3) {
+    if constexpr (W == 1) {
+        float* to = fourOf<Offset>(bodies, trash, place[0]);
+        to[0] = c0;
+        to[1] = c1;
+        to[2] = c2;
+        to[3] = c3;
+    } else {
+        scatter<Offset>(bodies, trash, place, c0, c1, c2, c3);
+    }
 }
 
 template <int W>
 HUESTEP_INLINE void scatterVelocities(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
                                       const VelocityLanes<W>& v) {
-    if constexpr (W == 1) {
-        float* to = velocityOf(bodies, trash, place[0]);
-        to[0] = v.vx;
-        to[1] = v.vy;
-        to[2] = v.w;
-    } else {
-        scatter(bodies, trash, place, v.vx, v.vy, v.w, v.inverseMass);
-    }
+    scatterFour<W, 0>(bodies, trash, place, v.vx, v.vy, v.w, v.inverseMass);
+}
+
+template <int W>
+HUESTEP_INLINE void scatterDeltas(SolverBody* bodies, SolverBody& trash, const BodyPlace* place,
+                                  const DeltaLanes<W>& d) {
+    scatterFour<W, 4>(bodies, trash, place, d.dx, d.dy, d.dc, d.ds);
+}
+
+/// Moves and turns W bodies, by Cayley's map.
+template <int W>
+HUESTEP_INLINE void displace(DeltaLanes<W>& d, const LaneF<W>& x, const LaneF<W>& y,
+                             const LaneF<W>& angle) {
+    const LaneF<W> one = splat<W>(1.0f);
+    const LaneF<W> k = splat<W>(0.5f) * angle;
+    const LaneF<W> inverse = one / (one + k * k);
+    const LaneF<W> c = (one - k * k) * inverse, s = (k + k) * inverse;
+    d.dx = d.dx + x;
+    d.dy = d.dy + y;
+    const LaneF<W> dc = c * d.dc - s * d.ds;
+    d.ds = s * d.dc + c * d.ds;
+    d.dc = dc;
 }
 
 /// The two bodies of W constraints, in registers between gather and scatter.

@@ -123,6 +123,7 @@ struct ContactPass {
     Softness soft;
     float inverseH = 0;   ///< 1/s
     float pushSpeed = 0;  ///< m/s, most that overlap is pushed apart with
+    float slop = 0;       ///< m, of overlap that `project` and `correct` let be
     ContactFeatures features;
 };
 
@@ -155,6 +156,14 @@ using ContactStrain = void (*)(ContactBlock* blocks, std::uint32_t count);
 using ContactCount = std::uint32_t (*)(const SolverBody* bodies, const ContactBlock& block,
                                        const ContactPass& pass);
 
+/// The same by lane: −1 for those that act, 0 for others. `active` has room for 16.
+using ContactActivity = void (*)(const SolverBody* bodies, const ContactBlock& block,
+                                 const ContactPass& pass, std::int32_t* active);
+
+/// Gives a block's rows the masses that follow from its inertias and from the bodies at the lanes'
+/// places.
+using ContactMasses = void (*)(const SolverBody* bodies, ContactBlock& block);
+
 /// Gives the rows of a hub's block the masses that follow from the bodies at the lanes' places,
 /// copies of the hub with their share of its mass among them. `hubIsA`: a mask by lane;
 /// `inertia`: of such a copy, inverse, 1/(kg·m²).
@@ -170,8 +179,13 @@ struct ContactKernels {
     ContactKernel relax = nullptr;           ///< normals without bias, then friction and rolling
     ContactKernel relaxCold = nullptr;  ///< `relax` once more, of contacts that began
     ContactKernel restitute = nullptr;
+    // Of projected Gauss-Seidel (pgs_kernels.cpp):
+    ContactKernel project = nullptr;  ///< normals that push rigidly at the bias rate, then friction
+    ContactKernel correct = nullptr;  ///< moves bodies that overlap apart, no velocity
     ContactSettle settle = nullptr;
     ContactCount countActive = nullptr;
+    ContactActivity markActive = nullptr;
+    ContactMasses findMasses = nullptr;
     ContactShare shareHub = nullptr;
     ContactStrain strain = nullptr;
 };

@@ -8,23 +8,12 @@
 #include <iterator>
 
 #include "core/contact/narrow_phase.h"
-#include "core/solver/body_lanes.h"
+#include "core/solver/contact_lanes.h"
 #include "core/world/event.h"
 
 namespace huestep {
 
 namespace {
-
-/// The two bodies of W contacts and the normal from A to B.
-template <int W>
-struct Pair : PairLanes<W> {
-    LaneF<W> nx, ny;
-
-    HUESTEP_INLINE Pair(const SolverBody* bodies, const ContactBlock& block, int lane)
-        : PairLanes<W>(bodies, block, lane),
-          nx(loadLanes<W>(block.normalX + lane)),
-          ny(loadLanes<W>(block.normalY + lane)) {}
-};
 
 /// Whether the bodies of W contacts have moved so little against each other that their manifolds
 /// are kept: `mayRecycle` and the overlap of bounds, operation by operation.
@@ -134,16 +123,6 @@ HUESTEP_INLINE void warmStartAgainLanes(SolverBody* bodies, ContactBlock& block,
     applyWarmImpulses<W>(bodies, block, block.warmA, block.warmB, lane, pass);
 }
 
-/// Current separation: at the start, plus how the anchors moved along the normal since.
-template <int W>
-HUESTEP_INLINE LaneF<W> separationNow(const Pair<W>& pair, const Anchors<W>& r,
-                                      const DeltaLanes<W>& a, const DeltaLanes<W>& b,
-                                      const LaneF<W>& start) {
-    const LaneF<W> x = (b.dx - a.dx) + ((b.dc * r.bx - b.ds * r.by) - (a.dc * r.ax - a.ds * r.ay));
-    const LaneF<W> y = (b.dy - a.dy) + ((b.ds * r.bx + b.dc * r.by) - (a.ds * r.ax + a.dc * r.ay));
-    return (x * pair.nx + y * pair.ny) + start;
-}
-
 /// The normal rows of both points. A point still apart may close its gap within the substep and
 /// no faster (bias s/h); one that overlaps is pushed out softly, or not at all in relax.
 template <int W, bool Bias>
@@ -182,43 +161,6 @@ HUESTEP_INLINE void solveNormals(Pair<W>& pair, const DeltaLanes<W>& a, const De
         }
         applyImpulse<W>(pair, r, impulse * pair.nx, impulse * pair.ny);
     }
-}
-
-/// Coulomb's cone, a row a point, with the normal impulse just found.
-template <int W>
-HUESTEP_INLINE void solveFriction(Pair<W>& pair, ContactBlock& block, int lane,
-                                  const ContactPass& pass) {
-    const LaneF<W> friction = loadLanes<W>(block.friction + lane);
-    const LaneF<W> zero = splat<W>(0.0f);
-    LaneF<W> surface = zero;
-    if (pass.features.tangentSpeed) surface = loadLanes<W>(block.tangentSpeed + lane);
-    for (ContactPointRows& p : block.points) {
-        const Anchors<W> r = anchorsOf<W>(p, lane);
-        LaneF<W> x, y;
-        relativeVelocity<W>(pair, r, x, y);
-        const LaneF<W> vt = (x * pair.ny - y * pair.nx) + surface;
-        const LaneF<W> old = loadLanes<W>(p.tangentImpulse + lane);
-        const LaneF<W> most = friction * loadLanes<W>(p.normalImpulse + lane);
-        const LaneF<W> free = old - loadLanes<W>(p.tangentMass + lane) * vt;
-        const LaneF<W> sum = maxLanes(zero - most, minLanes(free, most));
-        const LaneF<W> impulse = sum - old;
-        storeLanes<W>(p.tangentImpulse + lane, sum);
-        applyImpulse<W>(pair, r, impulse * pair.ny, zero - impulse * pair.nx);
-    }
-}
-
-template <int W>
-HUESTEP_INLINE void solveRolling(Pair<W>& pair, ContactBlock& block, int lane) {
-    const LaneF<W> zero = splat<W>(0.0f);
-    const LaneF<W> load = loadLanes<W>(block.points[0].normalImpulse + lane) +
-                          loadLanes<W>(block.points[1].normalImpulse + lane);
-    const LaneF<W> most = loadLanes<W>(block.rollingResistance + lane) * load;
-    const LaneF<W> old = loadLanes<W>(block.rollingImpulse + lane);
-    const LaneF<W> free = old - loadLanes<W>(block.rollingMass + lane) * (pair.b.w - pair.a.w);
-    const LaneF<W> sum = maxLanes(zero - most, minLanes(free, most));
-    storeLanes<W>(block.rollingImpulse + lane, sum);
-    pair.a.w = pair.a.w - pair.inverseInertiaA * (sum - old);
-    pair.b.w = pair.b.w + pair.inverseInertiaB * (sum - old);
 }
 
 template <int W>
@@ -339,22 +281,16 @@ HUESTEP_INLINE void activeLanes(const SolverBody* bodies, const ContactBlock& bl
     storeMask<W>(active + lane, any);
 }
 
-/// `rowMasses` in lanes. A point that is not there keeps its 0.
+/// `rowMasses` in lanes, with the inertias of the block. A point that is not there keeps its 0.
 template <int W>
-HUESTEP_INLINE void shareLanes(const SolverBody* bodies, ContactBlock& block, int lane,
-                               const std::int32_t* hubIsA, float inertia) {
+HUESTEP_INLINE void massLanes(const SolverBody* bodies, ContactBlock& block, int lane) {
     const auto inverse = [](const LaneF<W>& k) __attribute__((always_inline)) {
         const LaneF<W> zero = splat<W>(0.0f);
         return selectLanes(k > zero, splat<W>(1.0f) / k, zero);
     };
-    const auto isA = loadMask<W>(hubIsA + lane);
-    const LaneF<W> ofHub = splat<W>(inertia);
-    const LaneF<W> iA = selectLanes(isA, ofHub, loadLanes<W>(block.inverseInertiaA + lane));
-    const LaneF<W> iB = selectLanes(isA, loadLanes<W>(block.inverseInertiaB + lane), ofHub);
     const Pair<W> pair(bodies, block, lane);
+    const LaneF<W> iA = pair.inverseInertiaA, iB = pair.inverseInertiaB;
     const LaneF<W> m = pair.a.inverseMass + pair.b.inverseMass;
-    storeLanes<W>(block.inverseInertiaA + lane, iA);
-    storeLanes<W>(block.inverseInertiaB + lane, iB);
     storeLanes<W>(block.rollingMass + lane, inverse(iA + iB));
     for (ContactPointRows& p : block.points) {
         const Anchors<W> r = anchorsOf<W>(p, lane);
@@ -369,6 +305,18 @@ HUESTEP_INLINE void shareLanes(const SolverBody* bodies, ContactBlock& block, in
         storeLanes<W>(p.normalMass + lane, selectLanes(there, normal, zero));
         storeLanes<W>(p.tangentMass + lane, selectLanes(there, tangent, zero));
     }
+}
+
+template <int W>
+HUESTEP_INLINE void shareLanes(const SolverBody* bodies, ContactBlock& block, int lane,
+                               const std::int32_t* hubIsA, float inertia) {
+    const auto isA = loadMask<W>(hubIsA + lane);
+    const LaneF<W> ofHub = splat<W>(inertia);
+    const LaneF<W> iA = loadLanes<W>(block.inverseInertiaA + lane);
+    const LaneF<W> iB = loadLanes<W>(block.inverseInertiaB + lane);
+    storeLanes<W>(block.inverseInertiaA + lane, selectLanes(isA, ofHub, iA));
+    storeLanes<W>(block.inverseInertiaB + lane, selectLanes(isA, iB, ofHub));
+    massLanes<W>(bodies, block, lane);
 }
 
 /// The number where it is finite, 0 where it is not, and +0 for either zero: `finiteOrZero`.
@@ -455,6 +403,12 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
         }                                                                         \
     }
 #define HUESTEP_HUB(W, attributes)                                                               \
+    attributes void markActive##W(const SolverBody* bodies, const ContactBlock& block,           \
+                                  const ContactPass& pass, std::int32_t* active) {               \
+        for (int lane = 0; lane < blockLanes; lane += W) {                                       \
+            activeLanes<W>(bodies, block, lane, pass, active);                                   \
+        }                                                                                        \
+    }                                                                                            \
     attributes std::uint32_t countActive##W(const SolverBody* bodies, const ContactBlock& block, \
                                             const ContactPass& pass) {                           \
         std::int32_t active[blockLanes];                                                         \
@@ -470,6 +424,11 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
         for (int lane = 0; lane < blockLanes; lane += W) {                                       \
             shareLanes<W>(bodies, block, lane, hubIsA, inertia);                                 \
         }                                                                                        \
+    }                                                                                            \
+    attributes void findMasses##W(const SolverBody* bodies, ContactBlock& block) {               \
+        for (int lane = 0; lane < blockLanes; lane += W) {                                       \
+            massLanes<W>(bodies, block, lane);                                                   \
+        }                                                                                        \
     }
 #define HUESTEP_KERNELS(W, attributes)                                     \
     HUESTEP_HUB(W, attributes)                                             \
@@ -481,10 +440,10 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
     HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(relaxCold, ContactBlock, ContactPass, W, attributes)      \
     HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes)                                           \
-    ContactKernels{check##W,  refresh##W,     warmStart##W, warmStartAgain##W, \
-                   solve##W,  relax##W,       relaxCold##W, restitute##W,      \
-                   settle##W, countActive##W, shareHub##W,  strain##W},
+#define HUESTEP_ENTRY(W, attributes)                                                         \
+    ContactKernels{check##W,   refresh##W, warmStart##W,   warmStartAgain##W, solve##W,      \
+                   relax##W,   relaxCold##W, restitute##W, project##W,        correct##W,    \
+                   settle##W,  countActive##W, markActive##W, findMasses##W, shareHub##W, strain##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
 

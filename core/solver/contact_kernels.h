@@ -9,4 +9,13 @@ namespace huestep {
 /// Kernels of a width that is available; `Auto` gives the widest. All give the same bits.
 const ContactKernels& contactKernels(Simd simd);
 
+// Of pgs_kernels.cpp, for the list of kernels by width.
+#define HUESTEP_DECLARE_PGS(W, attributes)                                                    \
+    attributes void project##W(SolverBody* bodies, ContactBlock* blocks, std::uint32_t count, \
+                               const ContactPass& pass);                                      \
+    attributes void correct##W(SolverBody* bodies, ContactBlock* blocks, std::uint32_t count, \
+                               const ContactPass& pass);
+HUESTEP_EACH_WIDTH(HUESTEP_DECLARE_PGS)
+#undef HUESTEP_DECLARE_PGS
+
 }  // namespace huestep

@@ -3,6 +3,8 @@
 #include <array>
 #include <cassert>
 
+#include "core/solver/jacobi.h"
+#include "core/solver/pgs.h"
 #include "core/solver/soft_step.h"
 
 namespace huestep {
@@ -11,15 +13,71 @@ namespace {
 
 /// Place i: the method whose number is i.
 constexpr std::array methods{
-    MethodTraits{Method::SoftStep, "soft-step",
-                 "coloured Gauss-Seidel with soft rows and substeps: the product", solveSoftStep,
-                 true, true, true},
-    MethodTraits{Method::Sequential, "sequential",
-                 "the same in key order, one constraint after another", solveSoftStep, false, false,
-                 true},
+    MethodTraits{.method = Method::SoftStep,
+                 .name = "soft-step",
+                 .summary = "coloured Gauss-Seidel with soft rows and substeps: the product",
+                 .solve = solveSoftStep,
+                 .colours = true,
+                 .teams = true,
+                 .deterministic = true},
+    MethodTraits{.method = Method::Sequential,
+                 .name = "sequential",
+                 .summary = "the same in key order, one constraint after another",
+                 .solve = solveSoftStep,
+                 .colours = false,
+                 .teams = false,
+                 .deterministic = true},
+    MethodTraits{.method = Method::Jacobi,
+                 .name = "jacobi",
+                 .summary = "the same with all constraints of a sweep side by side",
+                 .solve = solveJacobi,
+                 .colours = false,
+                 .teams = true,
+                 .deterministic = true,
+                 .pinLanes = true,
+                 .incidence = true,
+                 .fit = fitJacobi},
+    MethodTraits{.method = Method::JacobiSplit,
+                 .name = "jacobi-split",
+                 .summary = "likewise, each with its share of its bodies' mass",
+                 .solve = solveJacobiSplit,
+                 .colours = false,
+                 .teams = true,
+                 .deterministic = true,
+                 .pinLanes = true,
+                 .incidence = true,
+                 .fit = fitJacobi},
+    MethodTraits{.method = Method::Pgs,
+                 .name = "pgs",
+                 .summary = "projected Gauss-Seidel over one step, errors in the velocity rows",
+                 .solve = solvePgs,
+                 .colours = true,
+                 .teams = true,
+                 .deterministic = true,
+                 .substepping = false,
+                 .hubs = false},
+    MethodTraits{.method = Method::PgsNgs,
+                 .name = "pgs-ngs",
+                 .summary = "the same without errors in velocities; sweeps over positions follow",
+                 .solve = solvePgsNgs,
+                 .colours = true,
+                 .teams = true,
+                 .deterministic = true,
+                 .substepping = false,
+                 .hubs = false},
 };
 
 }  // namespace
+
+PlanDemand demandOf(const MethodTraits& method, std::uint32_t substeps) {
+    PlanDemand demand;
+    demand.substeps = substeps;
+    demand.colours = method.colours;
+    demand.hubs = method.hubs;
+    demand.pinLanes = method.pinLanes;
+    demand.incidence = method.incidence;
+    return demand;
+}
 
 std::span<const MethodTraits> allMethods() {
     return methods;

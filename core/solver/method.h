@@ -64,10 +64,19 @@ struct MethodTraits {
     std::string_view name;     ///< as on the command line
     std::string_view summary;  ///< a line for people
     BatchSolver solve;
-    bool colours;        ///< else the plan has key order alone: overflow, then fixed overflow
-    bool teams;          ///< whether several workers may go through one batch together
-    bool deterministic;  ///< else the bits depend on how threads meet
+    bool colours;             ///< else the plan has key order alone: overflow, then fixed overflow
+    bool teams;               ///< whether several workers may go through one batch together
+    bool deterministic;       ///< else the bits depend on how threads meet
+    bool substepping = true;  ///< else one step of Δt; a scene's substeps are iterations
+    bool hubs = true;         ///< as in `PlanDemand`, the next two too
+    bool pinLanes = false;
+    bool incidence = false;
+    /// Makes room for what the method needs, before its batches; null: nothing.
+    void (*fit)(MethodMemory& memory, const Plan& plan) = nullptr;
 };
+
+/// What a method asks of the plan of a step.
+PlanDemand demandOf(const MethodTraits& method, std::uint32_t substeps);
 
 const MethodTraits& traitsOf(Method method);
 std::span<const MethodTraits> allMethods();

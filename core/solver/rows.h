@@ -30,6 +30,17 @@ struct BodySource {
     Vec2 lag;  ///< m/s, by how much the mean velocity of a substep is behind that at its end
 };
 
+/// What methods need beside the rows, each its own part: sized by `MethodTraits::fit`, holding
+/// nothing from step to step.
+struct MethodMemory {
+    struct alignas(16) Change {
+        float vx = 0, vy = 0, w = 0;  ///< m/s, rad/s
+        float unused = 0;
+    };
+    std::vector<Change> changes;  ///< by slot of the plan's incidence: what a row does to a body
+    std::vector<float> shares;    ///< by place: among how many rows a body is divided
+};
+
 /// Rows of a step. Contact rows stay for the next one where plan and manifold do, and hold the
 /// contacts' impulses then; all others stay for their memory alone. Arrays of bodies go by solver
 /// place.
@@ -55,6 +66,7 @@ class Rows {
     std::vector<ContactFeatures> blockFeatures;  ///< by block
     std::vector<JointRow> joints;                ///< in solving order
     std::vector<RevoluteBlock> revolutes;
+    MethodMemory memory;
 
     /// Room for all rows of a plan, and the fixed world.
     void fit(const Plan& plan);

@@ -6,15 +6,15 @@
 /// friction and rolling resistance are solved too. Restitution comes once, at the end.
 #pragma once
 
-#include "core/solver/method.h"
+#include "core/solver/sweep.h"
 
 namespace huestep {
 
-/// A `BatchSolver`: all substeps of a batch. With several workers every stage is shared out and
-/// ends in a barrier; with one the same stages run through without.
-void solveSoftStep(const BatchTask& task, const Team& team);
+/// All substeps of a batch, its constraints taken as `sweeper` does. With several workers every
+/// stage is shared out and ends in a barrier; with one the same stages run through without.
+void softStep(const BatchTask& task, const Team& team, Sweeper& sweeper);
 
-/// Whether a colour of a giant island is worth a barrier: by its size alone, whoever runs it.
-bool isShared(const Plan& plan, const ColourRun& run);
+/// A `BatchSolver`: the soft step colour by colour.
+void solveSoftStep(const BatchTask& task, const Team& team);
 
 }  // namespace huestep

@@ -23,6 +23,7 @@ struct Job {
     Simd simd;
 
     [[nodiscard]] float secondsOf(const Batch& batch) const {
+        if (!method.substepping) return world.stepSeconds;
         return world.stepSeconds / static_cast<float>(batch.substeps);
     }
     [[nodiscard]] BatchTask taskOf(const Batch& batch, ContactFeatures features) const {
@@ -117,6 +118,7 @@ void solveWhole(const Job& job, const Batch& batch, std::vector<ContactHit>& hit
 void solve(Rows& rows, const Plan& plan, const SolverWorld& world, const MethodTraits& method,
            Simd simd, Executor* executor, std::vector<ContactHit>& hits, StageTimer& timer) {
     rows.fit(plan);
+    if (method.fit != nullptr) method.fit(rows.memory, plan);
     const Job job{rows, plan, world, method, simd};
     std::vector<std::uint32_t> small;
     for (std::uint32_t i = 0; i < plan.batches.size(); ++i) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bitset>
 
-#include "core/solver/soft_step.h"
+#include "core/solver/sweep.h"
 #include "core/world/world_data.h"
 
 namespace huestep {

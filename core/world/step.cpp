@@ -185,9 +185,11 @@ void World::Data::updatePlan(Executor* executor) {
             ramps.reserve(state.motions.size());
             for (const BodyMotion& motion : state.motions) ramps.push_back(rampOf(motion.calm));
         }
+        PlanDemand demand = demandOf(traitsOf(state.info().solver()), substeps);
+        demand.efforts = efforts;
+        demand.ramps = ramps;
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
-                 static_cast<std::uint32_t>(state.bodies.size()), planLimits,
-                 {substeps, traitsOf(state.info().solver()).colours, efforts, ramps});
+                 static_cast<std::uint32_t>(state.bodies.size()), planLimits, demand);
         acc.planStamp = stamp;
     } else {
         for (const std::uint32_t lane : acc.freshLanes) {

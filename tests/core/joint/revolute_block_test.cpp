@@ -156,5 +156,21 @@ TEST(RevoluteLanes, GiveTheBitsOfJointsOneByOneAtEveryWidth) {
     }
 }
 
+TEST(RevoluteLanes, CorrectPositionsAsJointsOneByOneDoAtEveryWidth) {
+    Random random(2025);
+    SCOPED_TRACE(random.trace());
+    for (int trial = 0; trial < 200 && !HasFailure(); ++trial) {
+        const Field start = randomField(random, 1 + random.below(40), false);
+        Field single = start;
+        for (const JointRow& row : single.rows) correctJoint(single.bodies.data(), row);
+        for (const Simd simd : availableSimd()) {
+            Field wide = start;
+            revoluteKernels(simd).correct(wide.bodies.data(), wide.blocks.data(),
+                                          static_cast<std::uint32_t>(wide.rows.size()), {});
+            expectSame(wide, single, std::string(nameOf(simd)));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace huestep::test
