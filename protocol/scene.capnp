@@ -93,6 +93,8 @@ enum Method {
   jacobiSplit @3; # likewise, each with its share of its bodies' mass
   pgs @4;         # projected Gauss-Seidel over one step, errors in the velocity rows
   pgsNgs @5;      # the same without errors in velocities; sweeps over positions follow
+  locks @6;       # the soft step, constraints to all threads in key order, a lock a body
+  atomics @7;     # likewise, with atomic additions to bodies instead of locks
 }
 
 struct Joint {

@@ -214,8 +214,10 @@ enum class Method : std::uint8_t {
     JacobiSplit,  ///< likewise, each with its share of its bodies' mass
     Pgs,          ///< projected Gauss-Seidel over one step, errors in the velocity rows (Baumgarte)
     PgsNgs,       ///< the same without errors in velocities; sweeps over positions follow
+    Locks,        ///< the soft step, constraints to all threads in key order, a lock a body
+    Atomics,      ///< likewise, with atomic additions to bodies instead of locks
 };
-inline constexpr Method lastMethod = Method::PgsNgs;
+inline constexpr Method lastMethod = Method::Atomics;
 
 /// How far a world may be off at rest, where its substeps are planned: m, 0 or [1e-6, 1]. 0 is
 /// *visual*: 5 mm, or 1 % of the smaller body if that is more.

@@ -177,7 +177,7 @@ struct ContactKernels {
     ContactKernel warmStartAgain = nullptr;  ///< of bodies that do not carry their impulses over
     ContactKernel solve = nullptr;           ///< normals with bias
     ContactKernel relax = nullptr;           ///< normals without bias, then friction and rolling
-    ContactKernel relaxCold = nullptr;  ///< `relax` once more, of contacts that began
+    ContactKernel relaxCold = nullptr;       ///< `relax` once more, of contacts that began
     ContactKernel restitute = nullptr;
     // Of projected Gauss-Seidel (pgs_kernels.cpp):
     ContactKernel project = nullptr;  ///< normals that push rigidly at the bias rate, then friction
@@ -188,6 +188,18 @@ struct ContactKernels {
     ContactMasses findMasses = nullptr;
     ContactShare shareHub = nullptr;
     ContactStrain strain = nullptr;
+};
+
+/// The same passes for one contact of a block.
+using ContactLanePass = void (*)(SolverBody* bodies, ContactBlock& block, std::uint32_t lane,
+                                 const ContactPass& pass);
+struct ContactLanePasses {
+    ContactLanePass warmStart = nullptr;
+    ContactLanePass warmStartAgain = nullptr;
+    ContactLanePass solve = nullptr;
+    ContactLanePass relax = nullptr;
+    ContactLanePass relaxCold = nullptr;
+    ContactLanePass restitute = nullptr;
 };
 
 }  // namespace huestep

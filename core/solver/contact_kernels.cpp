@@ -440,16 +440,29 @@ HUESTEP_INLINE bool anySet(const std::int32_t (&mask)[blockLanes]) {
     HUESTEP_PASS(relax, ContactBlock, ContactPass, W, attributes)          \
     HUESTEP_PASS(relaxCold, ContactBlock, ContactPass, W, attributes)      \
     HUESTEP_PASS(restitute, ContactBlock, ContactPass, W, attributes)
-#define HUESTEP_ENTRY(W, attributes)                                                         \
-    ContactKernels{check##W,   refresh##W, warmStart##W,   warmStartAgain##W, solve##W,      \
-                   relax##W,   relaxCold##W, restitute##W, project##W,        correct##W,    \
-                   settle##W,  countActive##W, markActive##W, findMasses##W, shareHub##W, strain##W},
+#define HUESTEP_ENTRY(W, attributes)                                              \
+    ContactKernels{check##W,      refresh##W,    warmStart##W, warmStartAgain##W, \
+                   solve##W,      relax##W,      relaxCold##W, restitute##W,      \
+                   project##W,    correct##W,    settle##W,    countActive##W,    \
+                   markActive##W, findMasses##W, shareHub##W,  strain##W},
 
 HUESTEP_EACH_WIDTH(HUESTEP_KERNELS)
+
+#define HUESTEP_ONE(name)                                                                      \
+    [](SolverBody* bodies, ContactBlock& block, std::uint32_t lane, const ContactPass& pass) { \
+        name##Lanes<1>(bodies, block, static_cast<int>(lane), pass);                           \
+    }
+constexpr ContactLanePasses oneByOne{HUESTEP_ONE(warmStart), HUESTEP_ONE(warmStartAgain),
+                                     HUESTEP_ONE(solve),     HUESTEP_ONE(relax),
+                                     HUESTEP_ONE(relaxCold), HUESTEP_ONE(restitute)};
 
 constexpr ContactKernels byWidth[] = {HUESTEP_EACH_WIDTH(HUESTEP_ENTRY)};
 
 }  // namespace
+
+const ContactLanePasses& contactLanePasses() {
+    return oneByOne;
+}
 
 const ContactKernels& contactKernels(Simd simd) {
     return byWidth[widthIndex(simd)];

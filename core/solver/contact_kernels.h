@@ -8,6 +8,7 @@ namespace huestep {
 
 /// Kernels of a width that is available; `Auto` gives the widest. All give the same bits.
 const ContactKernels& contactKernels(Simd simd);
+const ContactLanePasses& contactLanePasses();
 
 // Of pgs_kernels.cpp, for the list of kernels by width.
 #define HUESTEP_DECLARE_PGS(W, attributes)                                                    \

@@ -5,6 +5,7 @@
 
 #include "core/solver/jacobi.h"
 #include "core/solver/pgs.h"
+#include "core/solver/shared_bodies.h"
 #include "core/solver/soft_step.h"
 
 namespace huestep {
@@ -65,6 +66,21 @@ constexpr std::array methods{
                  .deterministic = true,
                  .substepping = false,
                  .hubs = false},
+    MethodTraits{.method = Method::Locks,
+                 .name = "locks",
+                 .summary = "the soft step in key order on all threads, a spin lock a body",
+                 .solve = solveWithLocks,
+                 .colours = false,
+                 .teams = true,
+                 .deterministic = false,
+                 .fit = fitLocks},
+    MethodTraits{.method = Method::Atomics,
+                 .name = "atomics",
+                 .summary = "likewise, with atomic additions to bodies instead of locks",
+                 .solve = solveWithAtomics,
+                 .colours = false,
+                 .teams = true,
+                 .deterministic = false},
 };
 
 }  // namespace

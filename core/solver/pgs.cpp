@@ -12,10 +12,11 @@ constexpr float slop = 0.005f;         // m
 constexpr float pushSpeed = 4.0f;      // m/s
 constexpr float mostCorrected = 0.2f;  // m, in one sweep over positions
 
-constexpr Sweep projectSweep{solveJoint, &RevoluteKernels::solve, &ContactKernels::project};
+constexpr Sweep projectSweep{solveJoint, &RevoluteKernels::solve, &ContactKernels::project,
+                             nullptr};
 constexpr Sweep correctSweep{
     [](SolverBody* bodies, JointRow& row, const JointPass&) { correctJoint(bodies, row); },
-    &RevoluteKernels::correct, &ContactKernels::correct};
+    &RevoluteKernels::correct, &ContactKernels::correct, nullptr};
 
 /// Rigid rows over the whole step that know no errors of position.
 SweepPass rigidPass(const BatchTask& task) {

@@ -39,6 +39,7 @@ struct MethodMemory {
     };
     std::vector<Change> changes;  ///< by slot of the plan's incidence: what a row does to a body
     std::vector<float> shares;    ///< by place: among how many rows a body is divided
+    std::vector<std::uint32_t> locks;  ///< by place; 0: free
 };
 
 /// Rows of a step. Contact rows stay for the next one where plan and manifold do, and hold the

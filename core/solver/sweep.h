@@ -13,20 +13,26 @@ struct Sweep {
     void (*joint)(SolverBody* bodies, JointRow& row, const JointPass& pass);
     RevoluteKernel RevoluteKernels::*revolute;
     ContactKernel ContactKernels::*contact;
+    ContactLanePass ContactLanePasses::*lane;  ///< as `contact`, one by one
 };
 
 /// Applies the impulses that rows hold to all bodies.
 inline constexpr Sweep warmStartSweep{
     [](SolverBody* bodies, JointRow& row, const JointPass&) { warmStartJoint(bodies, row); },
-    &RevoluteKernels::warmStart, &ContactKernels::warmStart};
+    &RevoluteKernels::warmStart, &ContactKernels::warmStart, &ContactLanePasses::warmStart};
 /// The same for bodies that do not carry their impulses over by themselves.
 inline constexpr Sweep warmStartAgainSweep{warmStartSweep.joint, &RevoluteKernels::warmStart,
-                                           &ContactKernels::warmStartAgain};
-inline constexpr Sweep solveSweep{solveJoint, &RevoluteKernels::solve, &ContactKernels::solve};
-inline constexpr Sweep relaxSweep{solveJoint, &RevoluteKernels::solve, &ContactKernels::relax};
+                                           &ContactKernels::warmStartAgain,
+                                           &ContactLanePasses::warmStartAgain};
+inline constexpr Sweep solveSweep{solveJoint, &RevoluteKernels::solve, &ContactKernels::solve,
+                                  &ContactLanePasses::solve};
+inline constexpr Sweep relaxSweep{solveJoint, &RevoluteKernels::solve, &ContactKernels::relax,
+                                  &ContactLanePasses::relax};
 /// `relaxSweep` once more, of contacts that began in this step.
-inline constexpr Sweep relaxColdSweep{nullptr, nullptr, &ContactKernels::relaxCold};
-inline constexpr Sweep restituteSweep{nullptr, nullptr, &ContactKernels::restitute};
+inline constexpr Sweep relaxColdSweep{nullptr, nullptr, &ContactKernels::relaxCold,
+                                      &ContactLanePasses::relaxCold};
+inline constexpr Sweep restituteSweep{nullptr, nullptr, &ContactKernels::restitute,
+                                      &ContactLanePasses::restitute};
 
 /// Constants of a sweep.
 struct SweepPass {
