@@ -95,6 +95,7 @@ enum Method {
   pgsNgs @5;      # the same without errors in velocities; sweeps over positions follow
   locks @6;       # the soft step, constraints to all threads in key order, a lock a body
   atomics @7;     # likewise, with atomic additions to bodies instead of locks
+  avbd @8;        # augmented vertex block descent: positions body by body, backward Euler
 }
 
 struct Joint {

@@ -216,8 +216,9 @@ enum class Method : std::uint8_t {
     PgsNgs,       ///< the same without errors in velocities; sweeps over positions follow
     Locks,        ///< the soft step, constraints to all threads in key order, a lock a body
     Atomics,      ///< likewise, with atomic additions to bodies instead of locks
+    Avbd,         ///< augmented vertex block descent: positions body by body, backward Euler
 };
-inline constexpr Method lastMethod = Method::Atomics;
+inline constexpr Method lastMethod = Method::Avbd;
 
 /// How far a world may be off at rest, where its substeps are planned: m, 0 or [1e-6, 1]. 0 is
 /// *visual*: 5 mm, or 1 % of the smaller body if that is more.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cassert>
 
+#include "core/solver/avbd.h"
 #include "core/solver/jacobi.h"
 #include "core/solver/pgs.h"
 #include "core/solver/shared_bodies.h"
@@ -81,6 +82,15 @@ constexpr std::array methods{
                  .colours = false,
                  .teams = true,
                  .deterministic = false},
+    MethodTraits{.method = Method::Avbd,
+                 .name = "avbd",
+                 .summary = "augmented vertex block descent: positions body by body",
+                 .solve = solveAvbd,
+                 .colours = false,
+                 .teams = false,
+                 .deterministic = true,
+                 .substepping = false,
+                 .incidence = true},
 };
 
 }  // namespace

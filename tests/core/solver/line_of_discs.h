@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "core/solver/effort.h"
 #include "tests/core/support.h"
 
 namespace huestep::test {
@@ -63,7 +65,8 @@ enum class Order { OneByOne, SideBySide, Split };
 /// relaxing sweep, as in the first step of a world. `Split`: every body divided among its contacts.
 inline void softStepOf(LineOfDiscs& line, int substeps, Order order) {
     const double h = 1.0 / 60.0 / substeps;
-    const double omega = 2.0 * M_PI * 0.125 / h, damping = 10.0;
+    const double frequency = wide(rowFrequency(static_cast<std::uint32_t>(substeps)).contact);
+    const double omega = 2.0 * M_PI * frequency / h, damping = 10.0;
     const double a1 = 2.0 * damping + h * omega, a2 = h * omega * a1, a3 = 1.0 / (1.0 + a2);
     const std::size_t contacts = line.size() - 1;
     std::vector<double> impulse(contacts, 0.0);
@@ -113,6 +116,88 @@ inline double distanceOf(const World& world, const LineOfDiscs& line) {
         most = std::max(most, std::abs(wide(m.velocity.x) - line.velocity[i]));
     }
     return most;
+}
+
+/// Solves a x = b by elimination with pivots; none where it is singular.
+inline std::optional<std::vector<double>> solved(std::vector<std::vector<double>> a,
+                                                 std::vector<double> b) {
+    const std::size_t n = b.size();
+    for (std::size_t k = 0; k < n; ++k) {
+        std::size_t pivot = k;
+        for (std::size_t i = k; i < n; ++i) {
+            if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
+        }
+        if (std::abs(a[pivot][k]) < 1e-12) return std::nullopt;
+        std::swap(a[k], a[pivot]);
+        std::swap(b[k], b[pivot]);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i == k) continue;
+            const double f = a[i][k] / a[k][k];
+            for (std::size_t j = k; j < n; ++j) a[i][j] -= f * a[k][j];
+            b[i] -= f * b[k];
+        }
+    }
+    for (std::size_t k = 0; k < n; ++k) b[k] /= a[k][k];
+    return b;
+}
+
+/// Velocities after a step of rigid rows: λ ≥ 0, w = A λ + b ≥ 0, λ·w = 0, found by trying every
+/// set of rows that push. `bias(gap)`: the speed at which a gap may close, or must open if > 0.
+template <class Bias>
+std::vector<double> exactVelocities(const LineOfDiscs& line, Bias&& bias) {
+    const std::size_t rows = line.size() - 1;
+    std::vector<std::vector<double>> a(rows, std::vector<double>(rows, 0.0));
+    std::vector<double> b(rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+        a[i][i] = 1.0 / line.mass[i] + 1.0 / line.mass[i + 1];
+        if (i + 1 < rows) a[i][i + 1] = a[i + 1][i] = -1.0 / line.mass[i + 1];
+        b[i] = line.velocity[i + 1] - line.velocity[i] - bias(line.gap(i));
+    }
+    for (std::uint32_t set = 0; set < (1u << rows); ++set) {
+        std::vector<std::size_t> pushing;
+        for (std::size_t i = 0; i < rows; ++i) {
+            if ((set >> i & 1u) != 0) pushing.push_back(i);
+        }
+        std::vector<std::vector<double>> part;
+        std::vector<double> rhs;
+        for (const std::size_t i : pushing) {
+            part.emplace_back();
+            for (const std::size_t j : pushing) part.back().push_back(a[i][j]);
+            rhs.push_back(-b[i]);
+        }
+        const auto found = solved(part, rhs);
+        if (!found) continue;
+        std::vector<double> impulse(rows, 0.0);
+        for (std::size_t k = 0; k < pushing.size(); ++k) impulse[pushing[k]] = (*found)[k];
+        bool fits = true;
+        for (std::size_t i = 0; i < rows; ++i) {
+            double w = b[i];
+            for (std::size_t j = 0; j < rows; ++j) w += a[i][j] * impulse[j];
+            fits = fits && impulse[i] > -1e-9 && w > -1e-9;
+        }
+        if (!fits) continue;
+        std::vector<double> v = line.velocity;
+        for (std::size_t i = 0; i < rows; ++i) {
+            v[i] -= impulse[i] / line.mass[i];
+            v[i + 1] += impulse[i] / line.mass[i + 1];
+        }
+        return v;
+    }
+    ADD_FAILURE() << "every such problem has a solution";
+    return line.velocity;
+}
+
+/// Some discs overlap, some have a gap, some come together, some part.
+inline LineOfDiscs mixedLine(Random& random) {
+    LineOfDiscs line;
+    double x = 0.0;
+    for (int i = 0; i < 7; ++i) {
+        line.mass.push_back(random.between(1.0, 4.0));
+        line.position.push_back(x);
+        line.velocity.push_back(random.between(-1.0, 1.0));
+        x += 1.0 + random.between(-0.03, 0.015);
+    }
+    return line;
 }
 
 }  // namespace huestep::test

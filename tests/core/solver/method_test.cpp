@@ -118,7 +118,8 @@ TEST(Method, EachStopsTwoBodiesOfOnePinAgainstEachOtherAsTheRigidImpulseDoes) {
         scene.gravity = {};
         scene.sleep = false;
         scene.method = method.method;
-        scene.substeps = 1;
+        // What is exact in one sweep of pins takes the descent many: it has multipliers to find.
+        scene.substeps = method.method == Method::Avbd ? 64 : 1;
         // Slow, so that nobody goes anywhere within the step.
         scene.bodies[0].velocity = {0.01f, -0.004f};
         scene.bodies[1].angularVelocity = 0.02f;
