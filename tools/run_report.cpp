@@ -40,7 +40,7 @@ std::string reasonOf(const IslandView& island, const StepLayout& layout) {
 /// Why an island got its substeps.
 std::string effortOf(const IslandView& island) {
     if (island.strain == 0.0f) return std::to_string(island.substeps);
-    return std::to_string(island.substeps) + (island.rests ? ", at rest" : "") + ": a " +
+    return std::to_string(island.substeps) + (island.gentle ? ", gentle" : "") + ": a " +
            (island.strainedJoint ? "joint" : "contact") + " gives way by " +
            number(static_cast<double>(island.strain)) + " of the need";
 }
@@ -69,7 +69,7 @@ Json explanation(const StepLayout& layout) {
                            {"batch", island.batch},
                            {"batch_constraints", island.batchConstraints},
                            {"substeps", island.substeps},
-                           {"at_rest", island.rests},
+                           {"gentle", island.gentle},
                            {"strain", island.strain},
                            {"strained_row", island.strainedJoint ? "joint" : "contact"},
                            {"why", reasonOf(island, layout)}});

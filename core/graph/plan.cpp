@@ -56,12 +56,12 @@ void Builder::findAllIslands() {
     effortOf.assign(count, 0);
     rampOfIsland.assign(count, 0);
     for (const std::uint32_t body : plan.awake) {
-        // The highest level of its bodies; it rests if they all do.
+        // The highest level of its bodies; it is gentle if they all are.
         std::uint8_t& island = effortOf[plan.islandOf[body]];
         const std::uint8_t effort = demand.efforts[body];
         if (plan.islandOf[body] == body) island = effort;
-        const bool rests = restsAt(island) && restsAt(effort);
-        island = EffortPlan{std::max(levelOf(island), levelOf(effort)), 0, rests}.packed();
+        const bool gentle = gentleAt(island) && gentleAt(effort);
+        island = EffortPlan{std::max(levelOf(island), levelOf(effort)), 0, gentle}.packed();
         std::uint8_t& ramp = rampOfIsland[plan.islandOf[body]];
         ramp = std::max(ramp, demand.ramps[body]);
     }
@@ -90,16 +90,16 @@ void Builder::packBatches() {
         const bool planned = demand.substeps == 0;
         const std::uint8_t effort =
             planned ? std::min(levelOf(effortOf[body]), affordableEffort(size)) : std::uint8_t{0};
-        const bool rests = planned && restsAt(effortOf[body]);
+        const bool gentle = planned && gentleAt(effortOf[body]);
         const std::uint8_t ramp = planned ? rampOfIsland[body] : std::uint8_t{0};
-        std::uint32_t& open = openOf[(ramp * 2u + (rests ? 1u : 0u)) * levels + effort];
+        std::uint32_t& open = openOf[(ramp * 2u + (gentle ? 1u : 0u)) * levels + effort];
         if (giant || open == none || plan.batches[open].constraints + size > limits.batchSize) {
             const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
             Batch batch;
             batch.giant = giant;
             batch.effort = effort;
             batch.ramp = ramp;
-            batch.rests = rests;
+            batch.gentle = gentle;
             batch.substeps = planned ? substepsOf(effort) : demand.substeps;
             plan.batches.push_back(batch);
             batchOf[body] = fresh;

@@ -45,7 +45,7 @@ struct Batch {
     std::uint32_t constraints = 0;
     std::uint32_t substeps = 1;
     std::uint8_t effort = 0;  ///< of planned substeps: their level
-    bool rests = false;       ///< likewise
+    bool gentle = false;      ///< likewise
     std::uint8_t ramp = 0;    ///< see `rampOf`
     bool still = false;       ///< whether its bodies are known to be at that level, and not calm
     bool giant = false;

@@ -43,7 +43,7 @@ struct RowFrequency {
     float contact;  ///< against static and kinematic bodies twice that
     float joint;
 };
-RowFrequency rowFrequency(std::uint32_t substeps, bool rests = false);
+RowFrequency rowFrequency(std::uint32_t substeps, bool gentle = false);
 
 /// Violation at rest for an impulse that changes a row's velocity by 1 m/s a substep of `h`
 /// seconds: m. `frequency`: share of the substep rate.
@@ -57,26 +57,26 @@ float visualTolerance(float reach);
 struct EffortPlan {
     std::uint8_t level = standardEffort;
     std::int8_t calm = 0;  ///< steps; −1, −2: strained; below: a ramp, see `rampOf`
-    bool rests = false;    ///< contacts may be stiffer: nothing hits anything
+    bool gentle = false;   ///< contacts may be stiffer: nothing hits anything
 
     // Level and rest as a body's state keeps them.
-    static constexpr std::uint8_t restsBit = 0x80;
+    static constexpr std::uint8_t gentleBit = 0x80;
     [[nodiscard]] constexpr std::uint8_t packed() const {
-        return static_cast<std::uint8_t>(level | (rests ? restsBit : 0));
+        return static_cast<std::uint8_t>(level | (gentle ? gentleBit : 0));
     }
 };
 constexpr std::uint8_t levelOf(std::uint8_t effort) {
-    return effort & (EffortPlan::restsBit - 1);
+    return effort & (EffortPlan::gentleBit - 1);
 }
-constexpr bool restsAt(std::uint8_t effort) {
-    return (effort & EffortPlan::restsBit) != 0;
+constexpr bool gentleAt(std::uint8_t effort) {
+    return (effort & EffortPlan::gentleBit) != 0;
 }
 
 /// Between which levels an island may be.
 struct EffortRange {
-    std::uint8_t least = standardEffort;  ///< `restingEffort` of one that rests and has no joint
+    std::uint8_t least = standardEffort;  ///< `restingEffort` of one at rest without joints
     std::uint8_t most = highestEffort;    ///< `affordableEffort`; what needs more stays there
-    bool rests = false;                   ///< whether nothing in it moves much
+    bool gentle = false;                  ///< whether nothing in it is faster than 1 m/s
     bool jointed = false;                 ///< whether it has joints
 };
 

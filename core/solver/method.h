@@ -49,7 +49,7 @@ struct BatchTask {
     float stepSeconds;         ///< s
     std::uint32_t substeps;    ///< n; of methods without substeps: iterations
     float ramp;                ///< share of their frequency that rows have: (0, 1]
-    bool rests;                ///< whether contacts may be stiffer
+    bool gentle;               ///< whether contacts may be stiffer
     ContactFeatures features;  ///< of all contact rows
     const ContactKernels& contacts;
     const RevoluteKernels& revolutes;

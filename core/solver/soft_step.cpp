@@ -42,7 +42,7 @@ SoftStep::SoftStep(const BatchTask& task, const Team& team, Sweeper& sweeper)
       m_sweeper(sweeper),
       m_h(task.stepSeconds / static_cast<float>(task.substeps)) {
     const float rate = 1.0f / m_h, full = task.ramp * rate;
-    const RowFrequency frequency = rowFrequency(task.substeps, task.rests);
+    const RowFrequency frequency = rowFrequency(task.substeps, task.gentle);
     ContactPass& moving = m_biased.moving;
     moving.soft = softness(frequency.contact * full, contactDamping, m_h);
     moving.inverseH = rate;

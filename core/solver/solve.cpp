@@ -33,7 +33,7 @@ struct Job {
                 world.stepSeconds,
                 batch.substeps,
                 rampShare(batch.ramp),
-                batch.rests,
+                batch.gentle,
                 features,
                 contactKernels(simd),
                 revoluteKernels(simd)};

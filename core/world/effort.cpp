@@ -13,8 +13,12 @@ namespace huestep {
 
 namespace {
 
-// An island whose bodies are all slower than this rests. Twice what lets bodies fall asleep.
-constexpr float restSpeed = 0.1f;  // m/s, of any point
+// Of the fastest point of an island, m/s. Slower than this it may be taken for at rest, twice what
+// lets bodies fall asleep; and stays so up to another speed, as softer contacts give way at first.
+constexpr float restSpeed = 0.1f;
+constexpr float unrestSpeed = 0.5f;
+// Slower than this nothing hits anything: its contacts may be stiff.
+constexpr float gentleSpeed = 1.0f;
 
 Strain larger(Strain a, Strain b) {
     return b.most > a.most ? b : a;
@@ -34,7 +38,7 @@ class BatchEffort {
           m_rows(world.accelerators.rows),
           m_batch(batch) {
         const float h = world.state.info().stepSeconds / static_cast<float>(batch.substeps);
-        const RowFrequency frequency = rowFrequency(batch.substeps, batch.rests);
+        const RowFrequency frequency = rowFrequency(batch.substeps, batch.gentle);
         m_contactFloor = softFloor(frequency.contact * rampShare(batch.ramp), h);
         m_jointFloor = softFloor(frequency.joint * rampShare(batch.ramp), h);
     }
@@ -50,8 +54,8 @@ class BatchEffort {
     void overRows(F&& f) const;
     [[nodiscard]] Strain mostStrain() const;
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
-    [[nodiscard]] bool rests(std::uint32_t body) const;
-    [[nodiscard]] EffortRange rangeOf(std::uint32_t island, bool rests) const;
+    [[nodiscard]] float speedOf(std::uint32_t body) const;
+    [[nodiscard]] EffortRange rangeOf(std::uint32_t island, float fastest) const;
     [[nodiscard]] bool stays(Strain strain);
     void gather(std::optional<Strain> strain);
     void rescale() const;
@@ -142,12 +146,11 @@ void BatchEffort::rescale() const {
     }
 }
 
-/// Whether the body hardly moves.
-bool BatchEffort::rests(std::uint32_t body) const {
+/// A bound on the speed of any point of a body, m/s.
+float BatchEffort::speedOf(std::uint32_t body) const {
     const BodyMotion& motion = m_world.state.motions[body];
     const float spin = motion.angularVelocity * m_world.accelerators.shapes.reach[body];
-    const float left = restSpeed - absoluteOf(spin);
-    return left > 0.0f && lengthSquared(motion.velocity) < left * left;
+    return length(motion.velocity) + absoluteOf(spin);
 }
 
 /// What each island brings into the decision; `strain` where it is known to be that of all.
@@ -155,14 +158,14 @@ void BatchEffort::gather(std::optional<Strain> strain) {
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island = {strain.value_or(Strain{}), calmSteps, true, {}};
+            island = {strain.value_or(Strain{}), calmSteps, 0.0f, {}};
         }
         const BodyMotion& motion = m_world.state.motions[body];
         // A body that was lifted to the batch's level by others has not been calm there.
         const bool there = levelOf(motion.effort) == m_batch.effort;
         const std::int8_t calm = there ? motion.calm : std::min(motion.calm, std::int8_t{0});
         island.calm = std::min(island.calm, calm);
-        island.rests = island.rests && rests(body);
+        island.fastest = maxOf(island.fastest, speedOf(body));
     });
     if (strain) return;
     overRows([&](BodyPlace a, BodyPlace b, Strain ofRow) {
@@ -171,26 +174,27 @@ void BatchEffort::gather(std::optional<Strain> strain) {
     });
 }
 
-EffortRange BatchEffort::rangeOf(std::uint32_t island, bool rests) const {
+EffortRange BatchEffort::rangeOf(std::uint32_t island, float fastest) const {
     const bool jointed = m_plan.jointed[island] != 0;
-    return {rests && !jointed ? restingEffort : standardEffort,
-            affordableEffort(m_plan.constraintsOf[island]), rests, jointed};
+    const float still = m_batch.effort == restingEffort ? unrestSpeed : restSpeed;
+    return {!jointed && fastest < still ? restingEffort : standardEffort,
+            affordableEffort(m_plan.constraintsOf[island]), fastest < gentleSpeed, jointed};
 }
 
 /// Whether a giant that is strained so stays as it is, so that nothing is to be written.
 bool BatchEffort::stays(Strain strain) {
     if (!m_batch.giant || !m_batch.still) return false;
-    bool all = true;
+    float fastest = 0.0f;
     std::uint32_t island = none;
-    for (std::uint32_t p = m_batch.firstPlace; p < m_batch.endPlace && (all || island == none);
-         ++p) {
+    for (std::uint32_t p = m_batch.firstPlace;
+         p < m_batch.endPlace && (island == none || fastest < gentleSpeed); ++p) {
         const std::uint32_t body = m_plan.bodyOfPlace[p];
         if (m_world.activity[body] != movesNow) continue;
         island = m_plan.islandOf[body];
-        all = all && rests(body);
+        fastest = maxOf(fastest, speedOf(body));
     }
-    const EffortPlan now{m_batch.effort, 0, m_batch.rests};
-    const EffortPlan next = planEffort(now, strain.most, rangeOf(island, all));
+    const EffortPlan now{m_batch.effort, 0, m_batch.gentle};
+    const EffortPlan next = planEffort(now, strain.most, rangeOf(island, fastest));
     m_world.islandEfforts[island].strain = strain;
     return next.packed() == now.packed() && next.calm == 0 && m_batch.ramp == 0;
 }
@@ -199,17 +203,17 @@ bool BatchEffort::decide() {
     const Strain most = mostStrain();
     if (stays(most)) return false;
     // Where every island is as calm as the one that is strained most, none needs a closer look.
-    const EffortRange widest{restingEffort, highestEffort, m_batch.rests};
+    const EffortRange widest{restingEffort, highestEffort, m_batch.gentle};
     const bool alike =
         m_batch.giant || (m_batch.ramp == 0 && isCalm(m_batch.effort, most.most, widest));
     gather(alike ? std::optional(most) : std::nullopt);
-    const EffortPlan now{m_batch.effort, 0, m_batch.rests};
+    const EffortPlan now{m_batch.effort, 0, m_batch.gentle};
     bool changes = false, scales = false, still = true;
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island.next = planEffort({now.level, island.calm, now.rests}, island.strain.most,
-                                     rangeOf(body, island.rests));
+            island.next = planEffort({now.level, island.calm, now.gentle}, island.strain.most,
+                                     rangeOf(body, island.fastest));
             scales |= island.next.level != now.level;
             changes |= island.next.packed() != now.packed();
             still = still && island.next.packed() == now.packed() && island.next.calm == 0;
@@ -251,7 +255,7 @@ std::vector<std::uint8_t> World::Data::effortsNow() const {
         const std::uint8_t needed = effortOfBeginning(*this, contact);
         for (const std::uint32_t body : {contact.bodyA, contact.bodyB}) {
             const EffortPlan raised{std::max(levelOf(efforts[body]), needed), 0,
-                                    restsAt(efforts[body])};
+                                    gentleAt(efforts[body])};
             efforts[body] = raised.packed();
         }
     }

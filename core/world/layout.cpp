@@ -66,7 +66,7 @@ StepLayout World::stepLayout() const {
             view.batch = b;
             view.batchConstraints = batch.constraints;
             view.substeps = batch.substeps;
-            view.rests = batch.rests;
+            view.gentle = batch.gentle;
             if (m_data->state.info().planned() && body < m_data->islandEfforts.size()) {
                 view.strain = m_data->islandEfforts[body].strain.most;
                 view.strainedJoint = m_data->islandEfforts[body].strain.joint;

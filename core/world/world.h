@@ -104,7 +104,7 @@ struct IslandView {
     std::uint32_t batchConstraints = 0;  ///< of all islands of the batch
     std::uint32_t substeps = 0;
     // Where substeps are planned:
-    bool rests = false;  ///< nothing in it moves much: its contacts are stiffer
+    bool gentle = false;  ///< nothing in it is faster than 1 m/s: its contacts are stiffer
     /// Of what the scene's need allows, how much its worst row gives way at rest; an upper bound
     /// where it is far below 1.
     float strain = 0.0f;

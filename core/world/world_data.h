@@ -118,7 +118,7 @@ struct Strain {
 struct IslandEffort {
     Strain strain;
     std::int8_t calm = 0;  // the lowest of its bodies
-    bool rests = false;    // none of its bodies moves much, and it has no joint
+    float fastest = 0;     // m/s, of any of its points
     EffortPlan next;
 };
 

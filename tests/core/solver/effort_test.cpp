@@ -61,7 +61,7 @@ TEST(Effort, FallsOneLevelAfterThirtyCalmStepsAndNotBelowItsRange) {
     EXPECT_EQ(plan.level, 3);
     EXPECT_EQ(plan.calm, 0);
     EXPECT_EQ(after(plan, 1.0e-6f, 300, range).level, standardEffort);
-    EXPECT_EQ(after(plan, 1.0e-6f, 300, {.least = restingEffort, .rests = true}).level,
+    EXPECT_EQ(after(plan, 1.0e-6f, 300, {.least = restingEffort, .gentle = true}).level,
               restingEffort);
     EXPECT_EQ(planEffort({restingEffort, 0}, 0.0f, range).level, standardEffort)
         << "who no longer rests goes up at once";
