@@ -25,6 +25,9 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     applyCommands(commands);  // state, commands → bodies, shapes, joints
     timer.done(Stage::Commands);
 
+    if (with.shareAll)
+        planLimits = {
+            .batchSize = 0, .hubDegree = planLimits.hubDegree, .sharedFrom = 1, .parallelFrom = 0};
     const bool small = state.shapes.size() + state.joints.size() < planLimits.parallelFrom;
     Executor* executor = small ? nullptr : with.executor;
     followDefinitions(executor);  // bodies, shapes, joints → what follows from them, places

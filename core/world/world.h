@@ -29,6 +29,9 @@ struct StepResources {
     Executor* executor = nullptr;  ///< none: the caller's thread alone
     Simd simd = Simd::Auto;
     Clock clock = nullptr;  ///< none: `StepReport` has no times
+    /// Shares among the workers also what is too little to be worth it, from the world's first step
+    /// on: to measure what that costs.
+    bool shareAll = false;
 };
 
 /// The stages of a step, in order, as measured by `StepReport::nanoseconds`.

@@ -67,5 +67,20 @@ TEST(StepLayout, AgreesWithTheReportAndKnowsGiantsByTheirSize) {
     }
 }
 
+TEST(StepResources, ThreadsThatShareEvenLittleWorkChangeHowAStepIsLaidOutAndNotItsResult) {
+    World alone = worldOf("small:n=12");
+    World shared = alone;
+    Executor executor(2);
+    for (int tick = 0; tick < 60; ++tick) {
+        alone.step({});
+        shared.step({}, {.executor = &executor, .shareAll = true});
+        ASSERT_EQ(shared.fullRoot(), alone.fullRoot()) << "tick " << tick;
+    }
+    EXPECT_EQ(alone.stepLayout().giants, 0u);
+    EXPECT_EQ(shared.stepLayout().giants, shared.report().islands);
+    EXPECT_GT(shared.stepLayout().giants, 0u);
+    EXPECT_GT(shared.stepLayout().sharedColours, 0u);
+}
+
 }  // namespace
 }  // namespace huestep::test
