@@ -1,4 +1,4 @@
-/// The clock that tools hand to the core, which has none.
+/// The clocks that tools measure with; the core has none but the one that it is handed.
 #pragma once
 
 #include <cstdint>
@@ -7,5 +7,10 @@ namespace huestep::tools {
 
 /// Nanoseconds of a clock that never goes back; fits `huestep::Clock`.
 std::uint64_t nanoseconds();
+
+/// Nanoseconds for which a processor has worked on the calling thread, or on all threads of this
+/// program: what others do on the machine is not in them.
+std::uint64_t threadProcessorNanoseconds();
+std::uint64_t programProcessorNanoseconds();
 
 }  // namespace huestep::tools

@@ -46,5 +46,6 @@ void addJoin(Menu& menu);
 void addReplay(Menu& menu);
 void addDiff(Menu& menu);
 void addBench(Menu& menu);
+void addChart(Menu& menu);
 
 }  // namespace huestep::tools

@@ -13,7 +13,7 @@ namespace huestep::tools {
 HuestepEngine::HuestepEngine(World world, const EngineSetup& setup)
     : m_world(std::move(world)),
       m_executor(std::make_unique<Executor>(setup.threads, 0, setup.clock)),
-      m_resources{m_executor.get(), setup.simd, setup.clock} {}
+      m_resources{m_executor.get(), setup.simd, setup.clock, setup.shareAll} {}
 
 Status HuestepEngine::step(std::span<const Command> commands) {
     for (const CommandOutcome& outcome : m_world.step(commands, m_resources).commands)

@@ -33,6 +33,7 @@ struct EngineSetup {
     Simd simd = Simd::Auto;  ///< Huestep
     BuildOrder order{};      ///< Box2D 2.4
     Clock clock = nullptr;   ///< Huestep: for stage times and waiting; none: neither is measured
+    bool shareAll = false;   ///< Huestep: see `StepResources::shareAll`
 };
 
 /// A scene in an engine. `scene` must have passed `check`. `notes`, if given, gets a sentence for

@@ -51,6 +51,7 @@ int runProgram(int count, char** words) {
     addDiff(menu);
     addBench(menu);
     addAccuracy(menu);
+    addChart(menu);
     try {
         app.parse(count, words);
     } catch (const CLI::Success& help) {

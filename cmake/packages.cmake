@@ -1,4 +1,5 @@
-# Installs what package-lock.json says into TO, unless it is there already.
+# Installs what the package-lock.json of folder FROM says into folder TO, unless it is there already.
+# NPM: the program.
 file(MAKE_DIRECTORY ${TO})
 file(SHA256 ${FROM}/package-lock.json wanted)
 set(installed "")
@@ -15,6 +16,6 @@ execute_process(
   WORKING_DIRECTORY ${TO}
   RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
-  message(FATAL_ERROR "npm could not install the packages of tests/browser/package-lock.json")
+  message(FATAL_ERROR "npm could not install the packages of ${FROM}/package-lock.json")
 endif()
 file(WRITE ${TO}/installed ${wanted})

@@ -1,0 +1,81 @@
+#include "tools/chart/page.h"
+
+#include <duktape.h>
+
+#include <memory>
+#include <string_view>
+
+#include "tools/chart/assets.h"
+
+namespace huestep::tools::chart {
+namespace {
+
+/// JSON that may stand in a script of a page: nothing in it can end the script.
+std::string scriptText(const Json& document) {
+    std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+        text.replace(at, 1, "\\u003c");
+    return text;
+}
+
+/// The page's template has a line `<!-- name -->` where each part goes.
+std::string filled(std::string_view page, const std::string& name, std::string_view text) {
+    const std::string mark = "<!-- " + name + " -->";
+    const std::size_t at = page.find(mark);
+    std::string whole(page.substr(0, at));
+    whole += text;
+    whole += page.substr(at + mark.size());
+    return whole;
+}
+
+std::string element(const std::string& tag, std::string_view text) {
+    return '<' + tag + ">\n" + std::string(text) + "\n</" + tag.substr(0, tag.find(' ')) + '>';
+}
+
+struct HeapOff {
+    void operator()(duk_context* heap) const { duk_destroy_heap(heap); }
+};
+
+/// A script and what it ends with, as text; fails with the script's own words.
+Result<std::string> evaluate(duk_context* heap, std::string_view script) {
+    const bool failed = duk_peval_lstring(heap, script.data(), script.size()) != 0;
+    std::string text = duk_safe_to_string(heap, -1);
+    duk_pop(heap);
+    if (failed) return Error{"a chart could not be drawn: " + text};
+    return text;
+}
+
+}  // namespace
+
+std::string pageOf(const Json& document) {
+    std::string page(assets::pageHtml);
+    page = filled(page, "style", element("style", assets::pageStyle));
+    page = filled(page, "library", element("script", assets::library));
+    page = filled(page, "charts", element("script", assets::charts));
+    page = filled(page, "script", element("script", assets::pageScript));
+    return filled(
+        page, "data",
+        element("script id=\"document\" type=\"application/json\"", scriptText(document)));
+}
+
+Result<std::vector<Picture>> picturesOf(const Json& document) {
+    const std::unique_ptr<duk_context, HeapOff> heap(duk_create_heap_default());
+    if (!heap) return Error{"a chart could not be drawn: there is no memory"};
+    // The library waits for its next frame with timers, which there are none of here: each picture
+    // is drawn at once.
+    const std::string setting =
+        "var setTimeout = function () {}, document_ = " + scriptText(document) + "; null";
+    for (const std::string_view script :
+         {std::string_view(setting), assets::library, assets::charts})
+        if (const Result<std::string> done = evaluate(heap.get(), script); !done)
+            return done.error();
+    const Result<std::string> drawn =
+        evaluate(heap.get(), "JSON.stringify(huestepCharts.pictures(echarts, document_))");
+    if (!drawn) return drawn.error();
+    std::vector<Picture> pictures;
+    for (const Json& each : Json::parse(*drawn))
+        pictures.push_back({each.at("name").get<std::string>(), each.at("svg").get<std::string>()});
+    return pictures;
+}
+
+}  // namespace huestep::tools::chart
