@@ -1,7 +1,5 @@
 #include "tools/metrics/ballistic.h"
 
-#include <algorithm>
-
 #include "core/scene/in_double.h"
 
 namespace huestep::tools {
@@ -41,7 +39,7 @@ void Ballistic::watch(std::span<const BodyMotion> motions, bool touching) {
     for (const Body& body : m_bodies) {
         const Vec2d exact = body.position + t * body.velocity + (0.5 * t * t) * body.gravity;
         const double error = length(inDouble(motions[body.place].position) - exact);
-        m_result.maxError = std::max(m_result.maxError, error);
+        if (!(error <= m_result.maxError)) m_result.maxError = error;  // nor is NaN passed over
     }
 }
 

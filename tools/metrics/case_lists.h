@@ -14,6 +14,7 @@ void addFrictionCases(std::vector<MetricCase>& cases);      ///< A8 to A13
 void addImpactCases(std::vector<MetricCase>& cases);        ///< A14
 void addRestCases(std::vector<MetricCase>& cases);          ///< A4, A15, A18
 void addFrameCases(std::vector<MetricCase>& cases);         ///< A19
+void addTrajectoryCases(std::vector<MetricCase>& cases);    ///< R: beside the reference solver
 void addOrderCases(std::vector<MetricCase>& cases);         ///< A20: of the cases so far
 
 /// A built-in scene whose name and parameters are known to be right.

@@ -9,6 +9,7 @@
 #include "tools/metrics/pendulum.h"
 #include "tools/metrics/scenes.h"
 #include "tools/metrics/soft_model.h"
+#include "tools/reference/linkage.h"
 
 namespace huestep::tools {
 namespace {
@@ -148,19 +149,34 @@ void addJointErrors(std::vector<MetricCase>& cases) {
     cases.push_back(c);
 }
 
-/// Of two discs on arms of 1 m, both horizontal at the start (physics page, A6): the tip, found by
-/// the differential equation in minimal coordinates.
-void addDoublePendulum(std::vector<MetricCase>& cases) {
-    MetricCase c = caseOf("A6", "double-pendulum-1s", "double_pendulum", ticksIn(1.0));
-    c.what = "tip of a double pendulum after 1 s";
+/// The last body of a linkage at the end, beside its equations in minimal coordinates.
+void addTip(std::vector<MetricCase>& cases, std::string name, const std::string& scene,
+            double seconds) {
+    MetricCase c = caseOf("A6", std::move(name), scene, ticksIn(seconds));
     c.unit = "m";
-    c.reference = "equation in minimal coordinates";
-    c.judge = [](const World& world) {
-        return folded(world, Fold::Last, {}, [](const Frame& f) {
-            return length(positionOf(f, 2) - Vec2d{-1.4771364, -1.2884217});
-        });
+    c.reference = "minimal-coordinate ODE";
+    const auto solution = [seconds](const World& world) {
+        return reference::solveLinkage(*reference::Linkage::find(world), seconds);
+    };
+    c.uncertainty = [solution, scene = c.scene] {
+        return solution(*World::create(scene())).change;
+    };
+    c.judge = [solution](const World& world) {
+        const std::size_t last = world.bodies().size() - 1;
+        const Vec2d tip = solution(world).linkage.position(last);
+        return folded(world, Fold::Last, {},
+                      [last, tip](const Frame& f) { return length(positionOf(f, last) - tip); });
     };
     cases.push_back(c);
+}
+
+void addTips(std::vector<MetricCase>& cases) {
+    addTip(cases, "double-pendulum-0.5s", "double_pendulum", 0.5);
+    cases.back().what = "tip of a double pendulum, both arms horizontal at the start, after 0.5 s";
+    addTip(cases, "double-pendulum-1s", "double_pendulum", 1.0);
+    cases.back().what = "tip of a double pendulum, both arms horizontal at the start, after 1 s";
+    addTip(cases, "chain-10-tip", "chain:ratio=10,angle=90", 0.5);
+    cases.back().what = "ball of 10 kg on 10 links of 1 kg, let go horizontally, after 0.5 s";
 }
 
 /// How much energy was won at most, of what the chain has above hanging still.
@@ -239,7 +255,7 @@ void addArms(std::vector<MetricCase>& cases) {
 void addJointCases(std::vector<MetricCase>& cases) {
     addJointErrors(cases);
     addPendulums(cases);
-    addDoublePendulum(cases);
+    addTips(cases);
     addHeavyChains(cases);
     addArms(cases);
 }

@@ -6,6 +6,12 @@
 namespace huestep::tools {
 namespace {
 
+bool isWhole(const BodyMotion& m) {
+    return std::isfinite(m.position.x) && std::isfinite(m.position.y) &&
+           std::isfinite(m.velocity.x) && std::isfinite(m.velocity.y) &&
+           std::isfinite(m.angularVelocity);
+}
+
 class Folded final : public Judge {
  public:
     Folded(const World& start, Fold fold, Window window, Measure measure)
@@ -18,9 +24,11 @@ class Folded final : public Judge {
     void watch(std::uint64_t tick, std::span<const Command>, std::span<const BodyMotion> motions,
                bool) override {
         if (tick < m_window.first || tick > m_window.last) return;
-        const bool same = motions.size() == m_bodies;
+        // Not left to the measure: a maximum may pass over what is no number.
+        const bool whole =
+            motions.size() == m_bodies && std::all_of(motions.begin(), motions.end(), isWhole);
         const double value =
-            same ? m_measure({tick, static_cast<double>(tick) * m_step, motions}) : failed;
+            whole ? m_measure({tick, static_cast<double>(tick) * m_step, motions}) : failed;
         const double size = std::isfinite(value) ? std::abs(value) : failed;
         ++m_count;
         switch (m_fold) {

@@ -11,11 +11,11 @@
 namespace huestep::tools {
 namespace {
 
-/// 5 of "A5", so that A10 comes after A9.
-int numberOf(std::string_view metric) {
+/// "A", 5 of "A5", so that A10 comes after A9.
+std::pair<char, int> placeOf(std::string_view metric) {
     int number = 0;
     std::from_chars(metric.data() + 1, metric.data() + metric.size(), number);
-    return number;
+    return {metric[0], number};
 }
 
 std::vector<MetricCase> makeCases() {
@@ -26,9 +26,10 @@ std::vector<MetricCase> makeCases() {
     addImpactCases(cases);
     addRestCases(cases);
     addFrameCases(cases);
+    addTrajectoryCases(cases);
     addOrderCases(cases);
     std::stable_sort(cases.begin(), cases.end(), [](const MetricCase& a, const MetricCase& b) {
-        return numberOf(a.metric) < numberOf(b.metric);
+        return placeOf(a.metric) < placeOf(b.metric);
     });
     return cases;
 }

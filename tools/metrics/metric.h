@@ -59,6 +59,8 @@ struct MetricCase {
     std::string_view unit;       ///< "m", "rad", "s", "m/s"; "1": a share; "order": no error
     std::string_view reference;  ///< what it is held against, in a few words
     Truth truth = Truth::Rigid;
+    /// m, by which the reference may be off itself, where it is no closed form. Costs its solution.
+    std::function<double()> uncertainty;
     bool charted = false;          ///< one run, an error that work brings down: for diagrams
     std::uint64_t ticks = 0;       ///< that the run takes
     std::function<Scene()> scene;  ///< passes `check`; of a series, its first

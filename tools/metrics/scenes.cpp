@@ -1,8 +1,8 @@
 #include "tools/metrics/scenes.h"
 
-#include <cmath>
-#include <numbers>
 #include <random>
+
+#include "core/math/trig.h"
 
 namespace huestep::tools {
 
@@ -84,6 +84,44 @@ Scene straightStack(int boxes) {
     for (int i = 0; i < boxes; ++i) {
         add(scene, bodyOf({0.0f, static_cast<float>(i) + 0.5f}, ShapeDef::box(0.5f, 0.5f)));
     }
+    return scene;
+}
+
+Scene tippingBox() {
+    Scene scene = awake(true);
+    scene.bodies[0].shapes[0].material.friction = 2.0f;
+    const Rotation lean = rotationOf(static_cast<float>(20.0 * pi / 180.0));
+    BodyDef box = bodyOf({}, ShapeDef::box(0.5f, 0.5f));
+    box.shapes[0].material.friction = 2.0f;
+    box.rotation = lean;
+    box.position = rotate(lean, Vec2{0.5f, 0.5f});  // its lower left corner at the origin
+    add(scene, box);
+    return scene;
+}
+
+Scene seesaw() {
+    Scene scene = awake(false);
+    const std::uint32_t post = add(scene, BodyDef{});
+    const std::uint32_t bar = add(scene, bodyOf({}, ShapeDef::box(2.0f, 0.1f)));
+    hinge(scene, post, bar, {});
+    for (const float side : {-1.0f, 1.0f}) {
+        BodyDef box = bodyOf({1.2f * side, 0.35f}, ShapeDef::box(0.25f, 0.25f));
+        box.shapes[0].density = side < 0.0f ? 1.0f : 3.0f;
+        box.shapes[0].material.friction = 0.15f;
+        add(scene, box);
+    }
+    return scene;
+}
+
+Scene meetingPendulums() {
+    Scene scene = awake(false);
+    ShapeDef ball = ShapeDef::circle({}, 0.4f);
+    ball.material.restitution = 0.5f;
+    ball.material.friction = 0.0f;  // with friction, and hinges, laws of impact differ
+    const std::uint32_t above = add(scene, BodyDef{});
+    hinge(scene, above, add(scene, bodyOf({0.0f, -2.0f}, ball)), {0.0f, 0.0f});
+    // Its arm leans by 45 degrees.
+    hinge(scene, above, add(scene, bodyOf({-2.3142136f, -1.4142136f}, ball)), {-0.9f, 0.0f});
     return scene;
 }
 

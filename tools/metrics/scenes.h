@@ -28,6 +28,16 @@ Scene bridge(int planks);
 /// Unit boxes exactly upon each other on a floor.
 Scene straightStack(int boxes);
 
+/// A unit box that stands on a corner, leaning by 20 degrees, on a floor that it does not slip on.
+Scene tippingBox();
+
+/// A bar hinged at its middle, with a box on either end, the right one three times as heavy.
+Scene seesaw();
+
+/// Two discs of 0.4 m radius on arms of 2 m: one hangs still, one comes down on it from 45 degrees
+/// and meets it without friction and with restitution 0.5.
+Scene meetingPendulums();
+
 /// Two discs of 0.5 m radius that meet head on without gravity, the right one three times as heavy.
 Scene headOn(float restitution);
 
