@@ -9,6 +9,7 @@
 #include "tools/files.h"
 #include "tools/interrupt.h"
 #include "tools/lists.h"
+#include "tools/metrics/metric.h"
 #include "tools/progress.h"
 #include "tools/run_report.h"
 #include "tools/scene_source.h"
@@ -49,8 +50,27 @@ Status checkOptions(const Options& o) {
     return Done{};
 }
 
-/// Takes the ticks, each timed; what looks at the motions between them is not.
-Status stepAll(Engine& engine, const Script& script, const Options& options, Accuracy& accuracy,
+/// What looks at the motions between ticks.
+struct Watchers {
+    Accuracy accuracy;
+    std::vector<RunningJudge> judges;  ///< of the metrics whose scene this is
+
+    void watch(std::uint64_t tick, std::span<const Command> commands,
+               std::span<const BodyMotion> motions, bool touching) {
+        accuracy.watch(tick, commands, motions, touching);
+        for (const RunningJudge& judge : judges)
+            if (tick <= judge.metric->ticks) judge.judge->watch(tick, commands, motions, touching);
+    }
+    void finish(std::span<const BodyMotion> last, RunReport& report) {
+        report.accuracy = accuracy.finish(last);
+        for (const RunningJudge& judge : judges)
+            if (report.ticks >= judge.metric->ticks)
+                report.metrics.push_back({judge.metric, judge.judge->error()});
+    }
+};
+
+/// Takes the ticks, each timed; what watches them is not.
+Status stepAll(Engine& engine, const Script& script, const Options& options, Watchers& watchers,
                RunReport& report) {
     const auto* huestep = dynamic_cast<const HuestepEngine*>(&engine);
     Progress progress("stepping", report.ticksAsked);
@@ -62,7 +82,7 @@ Status stepAll(Engine& engine, const Script& script, const Options& options, Acc
         report.tickNanoseconds.add(nanoseconds() - begin);
         ++report.ticks;
         motions = engine.motions();
-        accuracy.watch(report.ticks, commands, motions, engine.contactCount() > 0);
+        watchers.watch(report.ticks, commands, motions, engine.contactCount() > 0);
         if (huestep != nullptr) report.add(huestep->world().report());
         if (options.hashEvery != 0 && report.ticks % options.hashEvery == 0) {
             const RunReport::TickHash hash{report.ticks, engine.hash(),
@@ -75,7 +95,7 @@ Status stepAll(Engine& engine, const Script& script, const Options& options, Acc
         }
         progress.advance();
     }
-    report.accuracy = accuracy.finish(motions);
+    watchers.finish(motions, report);
     return Done{};
 }
 
@@ -126,8 +146,10 @@ Answer run(const Options& options) {
     report.threads = options.threads;
     report.simd = std::string(nameOf(*simd));
     report.ticksAsked = ticks;
-    Accuracy accuracy(*start);
-    if (const Status done = stepAll(**engine, named->script, options, accuracy, report); !done)
+    Setting setting;
+    if (options.engine == "huestep") setting = {{}, scene.method, scene.substeps};
+    Watchers watchers{Accuracy(*start), judgesOf(scene, *start, setting)};
+    if (const Status done = stepAll(**engine, named->script, options, watchers, report); !done)
         return Error{options.scene + ": " + done.error().message};
     report.close(**engine, options.explain);
     showNotes((*engine)->notes());

@@ -1,6 +1,7 @@
 #include "tools/run_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -138,6 +139,14 @@ Json RunReport::asJson() const {
     json["bodies"] = bodies;
     json["contacts"] = contacts;
     json["accuracy"] = tools::asJson(accuracy);
+    Json judged = Json::array();
+    for (const Judged& m : metrics)
+        judged.push_back({{"metric", m.metric->metric},
+                          {"case", m.metric->name},
+                          {"error", std::isfinite(m.error) ? Json(m.error) : Json()},
+                          {"unit", m.metric->unit},
+                          {"reference", m.metric->reference}});
+    json["metrics"] = judged;
     Json every = Json::array();
     for (const TickHash& h : hashes) {
         Json row = {{"tick", h.tick}, {"motion", hex(h.motion)}};
@@ -201,6 +210,15 @@ void RunReport::print() const {
     std::printf("contacts     %u\n", contacts);
     if (inside) printInside();
     tools::print(accuracy);
+    printMetrics();
+}
+
+void RunReport::printMetrics() const {
+    for (const Judged& m : metrics)
+        std::printf("metric %-5s %s%s: %s (against: %s)\n", std::string(m.metric->metric).c_str(),
+                    number(m.error).c_str(),
+                    m.metric->unit == "1" ? "" : (" " + std::string(m.metric->unit)).c_str(),
+                    m.metric->what.c_str(), std::string(m.metric->reference).c_str());
 }
 
 void RunReport::printInside() const {

@@ -10,6 +10,7 @@
 #include "core/scene/engine.h"
 #include "core/world/world.h"
 #include "tools/accuracy.h"
+#include "tools/metrics/metric.h"
 #include "tools/statistics.h"
 #include "tools/text.h"
 
@@ -59,6 +60,11 @@ struct RunReport {
     std::uint64_t bodies = 0;
     std::uint32_t contacts = 0;
     AccuracyResult accuracy;
+    struct Judged {
+        const MetricCase* metric = nullptr;
+        double error = 0.0;  ///< in the case's unit
+    };
+    std::vector<Judged> metrics;  ///< whose scene this is, and whose time was run
 
     std::optional<RunInside> inside;
 
@@ -69,6 +75,7 @@ struct RunReport {
     void print() const;
 
  private:
+    void printMetrics() const;
     void printInside() const;
     void printLayout() const;
 };

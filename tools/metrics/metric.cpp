@@ -34,6 +34,21 @@ std::vector<MetricCase> makeCases() {
     return cases;
 }
 
+/// Whether the method goes over the soft step's rows, in whatever order.
+bool hasSoftRows(Method method) {
+    switch (method) {
+        case Method::SoftStep:
+        case Method::Sequential:
+        case Method::Jacobi:
+        case Method::JacobiSplit:
+        case Method::Locks:
+        case Method::Atomics:
+            return true;
+        default:
+            return false;
+    }
+}
+
 /// What decides motion, apart from how it is solved.
 Scene withoutSolver(Scene scene) {
     const Scene standard;
@@ -67,8 +82,8 @@ const MetricCase* findMetricCase(std::string_view name) {
 bool appliesTo(const MetricCase& metric, const Setting& setting) {
     const bool given = setting.substeps != 0;
     if (metric.unit == "order") return given;
-    const bool soft = setting.method == Method::SoftStep || setting.method == Method::Sequential;
-    return metric.truth == Truth::Rigid || (soft && given);
+    return metric.truth == Truth::Rigid ||
+           (given && setting.method && hasSoftRows(*setting.method));
 }
 
 Result<double> judgeRun(Scene scene, const Script& script, std::uint64_t ticks,
