@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/solver/method.h"
 #include "core/state/hash.h"
 #include "protocol/codec.h"
 #include "protocol/scene_file.h"
@@ -20,6 +21,14 @@ bool holds(const std::vector<std::string>& names, const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Clients step their own copies: a method whose bits depend on how threads meet cannot be hosted.
+Status checkMethod(const Scene& scene, const std::string& session) {
+    const MethodTraits& method = traitsOf(scene.method);
+    if (method.deterministic) return Done{};
+    return Error{"session " + session + ": its scene is solved by '" + std::string(method.name) +
+                 "', whose results differ from run to run; only deterministic methods are hosted"};
+}
+
 Result<Scene> storedScene(LogStore& store, const std::vector<std::string>& names,
                           const RecoveryRequest& request, bool& created) {
     if (holds(names, sceneFile)) {
@@ -27,12 +36,14 @@ Result<Scene> storedScene(LogStore& store, const std::vector<std::string>& names
         if (!bytes) return bytes.error();
         Result<Scene> scene = protocol::readScene(*bytes);
         if (!scene) return Error{store.describe(sceneFile) + ": " + scene.error().message};
+        if (const Status fine = checkMethod(*scene, request.name); !fine) return fine.error();
         return scene;
     }
     if (!request.scene) {
         return Error{"session " + request.name +
                      " has no scene to start from: " + store.describe(sceneFile) + " is not there"};
     }
+    if (const Status fine = checkMethod(*request.scene, request.name); !fine) return fine.error();
     created = true;
     const Status written = store.replace(sceneFile, protocol::writeSceneBinary(*request.scene));
     if (!written) return written.error();

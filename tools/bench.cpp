@@ -41,8 +41,7 @@ struct Options {
 Result<std::vector<std::string>> parseEngines(const std::string& text) {
     std::vector<std::string> names = splitAtCommas(text);
     for (const std::string& name : names)
-        if (const Status known = checkEngine(name, benchEngineNames()); !known)
-            return known.error();
+        if (const Status known = checkBenchEngine(name); !known) return known.error();
     return names;
 }
 
@@ -195,7 +194,8 @@ void addBench(Menu& menu) {
     sub->add_option("--threads", o->threads, "Thread counts (default: 1,2)");
     std::string names;
     for (const std::string& name : benchEngineNames()) names += (names.empty() ? "" : ", ") + name;
-    sub->add_option("--engine", o->engines, "Of " + names + " (default: huestep,box2d)");
+    sub->add_option("--engine", o->engines,
+                    "Of " + names + ", huestep:METHOD (default: huestep,box2d)");
     sub->add_option("--ticks", o->ticks, "Steps to take (default: each scene's own)")
         ->transform(wholeNumber(1, 1'000'000));
     sub->add_option("--repeat", o->repeats, "Timed runs of each row (default: 6)")

@@ -45,6 +45,18 @@ std::vector<std::string> benchEngineNames() {
     return names;
 }
 
+namespace {
+
+constexpr std::string_view methodPrefix = "huestep:";
+
+}  // namespace
+
+Status checkBenchEngine(const std::string& name) {
+    if (!name.starts_with(methodPrefix)) return checkEngine(name, benchEngineNames());
+    const Result<Method> method = parseMethod(name.substr(methodPrefix.size()));
+    return method ? Status{Done{}} : Status{method.error()};
+}
+
 Status checkEngine(const std::string& name, const std::vector<std::string>& names) {
     if (std::find(names.begin(), names.end(), name) != names.end()) return Done{};
     std::string list;
@@ -72,7 +84,13 @@ Result<std::unique_ptr<Engine>> makeEngine(const std::string& name, const Scene&
     if (name == "box2d3") return makeBox2d3Engine(scene, setup.threads);
 #endif
     if (name == "box2d") return makeBox2dEngine(scene, setup.order, notes);
-    Result<World> world = World::create(scene);
+    Scene own = scene;
+    if (name.starts_with(methodPrefix)) {
+        const Result<Method> method = parseMethod(name.substr(methodPrefix.size()));
+        if (!method) return method.error();
+        own.method = *method;
+    }
+    Result<World> world = World::create(own);
     if (!world) return world.error();
     return std::unique_ptr<Engine>(std::make_unique<HuestepEngine>(std::move(*world), setup));
 }

@@ -21,6 +21,9 @@ std::vector<std::string> benchEngineNames();
 /// Refuses a name that is not in the list, with a sentence that shows the list.
 Status checkEngine(const std::string& name, const std::vector<std::string>& names);
 
+/// The same for `bench`: those to be measured, and Huestep by another method, as `huestep:pgs`.
+Status checkBenchEngine(const std::string& name);
+
 /// A method by its name; fails with a sentence that shows the list.
 Result<Method> parseMethod(const std::string& name);
 
@@ -36,8 +39,9 @@ struct EngineSetup {
     bool shareAll = false;   ///< Huestep: see `StepResources::shareAll`
 };
 
-/// A scene in an engine. `scene` must have passed `check`. `notes`, if given, gets a sentence for
-/// each thing that a peer leaves out or approximates.
+/// A scene in an engine, by a name of the lists or `huestep:METHOD`. `scene` must have passed
+/// `check`. `notes`, if given, gets a sentence for each thing that a peer leaves out or
+/// approximates.
 Result<std::unique_ptr<Engine>> makeEngine(const std::string& name, const Scene& scene,
                                            const EngineSetup& setup = {},
                                            std::vector<std::string>* notes = nullptr);

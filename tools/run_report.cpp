@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/solver/effort.h"
 #include "tools/clock.h"
 #include "tools/engines.h"
 
@@ -122,6 +123,10 @@ void RunReport::close(const Engine& peer, bool explain) {
     const auto* huestep = dynamic_cast<const HuestepEngine*>(&peer);
     if (huestep == nullptr) return;
     if (!inside) inside.emplace();
+    const WorldInfo& info = huestep->world().info();
+    inside->method = &traitsOf(info.solver());
+    const bool given = info.planned() || info.substeps != 0;
+    inside->substeps = given ? info.substeps : substepsOf(standardEffort);
     inside->fullRoot = huestep->world().fullRoot();
     inside->jointCount = huestep->world().joints().size();
     inside->waited = huestep->executor().waited();
@@ -161,6 +166,7 @@ Json RunReport::asJson() const {
         stages[std::string(nameOf(static_cast<Stage>(s)))] =
             share(inside->stageNanoseconds[s], ticks) / nsPerMs;
     json["ms_by_stage"] = stages;
+    json["method"] = inside->method->name;
     json["joints"] = inside->jointCount;
     json["awake_bodies"] = inside->last.awakeBodies;
     json["pairs"] = inside->last.pairs;
@@ -232,6 +238,9 @@ void RunReport::printInside() const {
     }
     std::string waits;
     for (const double wait : milliseconds(in.waited)) waits += " " + number(wait);
+    const std::string turns = in.substeps == 0 ? "planned" : std::to_string(in.substeps);
+    std::printf("method       %s, %s %s\n", std::string(in.method->name).c_str(), turns.c_str(),
+                in.method->substepping ? "substeps" : "iterations");
     std::printf("by stage     mean ms a tick: %s\n", stages.c_str());
     std::printf("awake        %u bodies, %u joints of %zu, %u pairs, %u contacts recycled\n",
                 in.last.awakeBodies, in.last.joints, in.jointCount, in.last.pairs,
@@ -261,7 +270,9 @@ void RunReport::printLayout() const {
     const StepLayout& layout = *in.layout;
     std::uint64_t all = 0;
     for (const std::uint64_t ns : in.stageNanoseconds) all += ns;
-    std::printf("explained\n");
+    std::printf("explained\n  %s: %s%s\n", std::string(in.method->name).c_str(),
+                std::string(in.method->summary).c_str(),
+                in.method->deterministic ? "" : "; not deterministic on more than one thread");
     Table stages({"  stage", "ms a tick", "share, %"});
     for (std::size_t s = 0; s < stageCount; ++s)
         if (in.stageNanoseconds[s] != 0)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scene/engine.h"
+#include "core/solver/method.h"
 #include "core/world/world.h"
 #include "tools/accuracy.h"
 #include "tools/metrics/metric.h"
@@ -28,6 +29,8 @@ StateCost measureState(const World& world);
 
 /// What only Huestep says of a run.
 struct RunInside {
+    const MethodTraits* method = nullptr;
+    std::uint32_t substeps = 0;  ///< of a tick, or iterations; 0: planned for each island
     std::uint64_t fullRoot = 0;
     StepReport last;
     std::array<std::uint64_t, static_cast<std::size_t>(Stage::Count)> stageNanoseconds{};

@@ -274,17 +274,26 @@ Answer verify(const VerifyOptions& options, bool threadsGiven) {
     if (const Status known = checkEngine(options.engine, engineNames()); !known)
         return known.error();
     const bool peer = options.engine != "huestep";
+    if (peer && !options.method.empty())
+        return Error{"--method: " + options.engine + " has its own; only huestep can choose"};
     if (looksLikeJournal(options.source)) {
+        if (!options.method.empty())
+            return Error{"--method: a journal was made by one method and is replayed by it"};
         if (peer)
             return Error{"--engine: a journal is of huestep and cannot be played by " +
                          options.engine};
         return verifyWorlds(options, planJournal(options));
     }
     std::error_code wrong;
-    const Result<NamedScene> named = loadScene(options.source);
+    Result<NamedScene> named = loadScene(options.source);
     if (!named && !std::filesystem::exists(options.source, wrong))
         return Error{named.error().message + ", nor a folder with a journal"};
     if (!named) return named.error();
+    if (!options.method.empty()) {
+        const Result<Method> method = parseMethod(options.method);
+        if (!method) return method.error();
+        named->scene.method = *method;
+    }
     if (!peer) return verifyWorlds(options, planScene(options, *named));
     if (threadsGiven || options.restoreEvery != 0)
         return Error{"--threads, --simd and --restore-every: " + options.engine +
@@ -306,6 +315,7 @@ void addVerify(Menu& menu) {
     sub->add_option("SCENE|LOG", o->source, "Scene, scene file, or the folder of a journal")
         ->required();
     sub->add_option("--engine", o->engine, "Whose runs to compare (default: huestep)");
+    sub->add_option("--method", o->method, "How constraints are solved (default: the scene's own)");
     sub->add_option("--ticks", o->ticks, "Steps to take (default: the scene's own)")
         ->transform(wholeNumber(1, maxTicks));
     const auto note = [given](const std::string&) { *given = true; };

@@ -12,6 +12,7 @@ namespace huestep::tools {
 struct VerifyOptions {
     std::string source;
     std::string engine = "huestep";
+    std::string method;       ///< empty: the scene's own
     std::uint64_t ticks = 0;  ///< 0: the scene's own, the journal's end
     std::string threads = "1,2,3,8";
     std::string simd = "all";

@@ -78,6 +78,20 @@ Limits often() {
     return limits;
 }
 
+TEST(Recovery, RefusesAMethodWhoseBitsDifferFromRunToRun) {
+    Scene scene = deskScene();
+    scene.method = Method::Locks;
+    MemoryStore disk;
+    const Status refused = Life(disk, {}, &scene).open();
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().message,
+              "session play: its scene is solved by 'locks', whose results differ from run to run; "
+              "only deterministic methods are hosted");
+    EXPECT_TRUE(disk.list()->empty()) << "nothing is left of it";
+    scene.method = Method::Pgs;
+    EXPECT_TRUE(Life(disk, {}, &scene).open().ok());
+}
+
 TEST(Recovery, AnEmptyFolderStartsFromTheScene) {
     MemoryStore disk;
     const Scene scene = deskScene();
