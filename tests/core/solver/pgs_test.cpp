@@ -43,6 +43,55 @@ TEST(Pgs, ConvergesToTheSolutionOfTheDenseProblem) {
     EXPECT_GT(first, 1e-2) << "two iterations are not enough";
 }
 
+/// Vertical velocities of eleven bodies of 1 kg that hang one below the other, each held to the one
+/// above it: four iterations a step over every second joint, then the others, the topmost last.
+std::vector<double> hangingVelocities(int steps) {
+    constexpr int count = 11;
+    std::vector<double> v(count, 0.0), error(count, 0.0), impulse(count, 0.0);
+    const auto push = [&](int joint, double p) {
+        v[static_cast<std::size_t>(joint)] += p;
+        if (joint > 0) v[static_cast<std::size_t>(joint - 1)] -= p;
+    };
+    const auto rate = [&](int joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        return joint > 0 ? v[j] - v[j - 1] : v[j];
+    };
+    const auto solve = [&](int joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        const double mass = joint > 0 ? 0.5 : 1.0;
+        const double p = -mass * (rate(joint) + 0.2 / dt * error[j]);
+        impulse[j] += p;
+        push(joint, p);
+    };
+    for (int step = 0; step < steps; ++step) {
+        for (double& speed : v) speed -= 10.0 * dt;
+        for (int j = 0; j < count; ++j) push(j, impulse[static_cast<std::size_t>(j)]);
+        for (int iteration = 0; iteration < 4; ++iteration) {
+            for (int j = 1; j < count; j += 2) solve(j);
+            for (int j = 2; j < count; j += 2) solve(j);
+            solve(0);
+        }
+        for (int j = 0; j < count; ++j) error[static_cast<std::size_t>(j)] += dt * rate(j);
+    }
+    return v;
+}
+
+TEST(Pgs, LetsAChainHangAndSwingUpAsFourIterationsInDoubleDo) {
+    Scene scene = *sceneFromCatalog("chain:ratio=1");
+    scene.method = Method::Pgs;
+    scene.substeps = 4;
+    World world = worldOf(scene);
+    for (const int step : {1, 8, 30}) {
+        while (world.tick() < static_cast<std::uint64_t>(step)) world.step({});
+        const std::vector<double> expected = hangingVelocities(step);
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            EXPECT_NEAR(wide(world.motions()[i + 1].velocity.y), expected[i], 1e-3)
+                << "body " << i << " after " << step << " steps";
+        }
+    }
+    EXPECT_GT(std::abs(hangingVelocities(60).back()), 3.0) << "which is a known failing";
+}
+
 /// Two discs of 1 kg and of 3 kg at rest, with an overlap.
 LineOfDiscs overlapping(double by) {
     return {{1.0, 3.0}, {0.0, 1.0 - by}, {0.0, 0.0}};
