@@ -114,6 +114,12 @@ std::string cell(const std::optional<double>& error) {
     return std::isfinite(*error) ? number(*error) : "failed";
 }
 
+/// A number, "auto", or null of an engine that takes none.
+Json substepsOf(const Setting& setting) {
+    if (!setting.method) return {};
+    return setting.substeps != 0 ? Json(setting.substeps) : Json("auto");
+}
+
 void printJson(const Options& o, const std::vector<Column>& columns, const std::vector<Row>& rows) {
     Json results = Json::array();
     for (const Row& row : rows)
@@ -126,7 +132,7 @@ void printJson(const Options& o, const std::vector<Column>& columns, const std::
                  {"case", row.metric->name},
                  {"engine", o.engine},
                  {"method", setting.method ? Json(traitsOf(*setting.method).name) : Json()},
-                 {"substeps", setting.substeps != 0 ? Json(setting.substeps) : Json("auto")},
+                 {"substeps", substepsOf(setting)},
                  {"error", std::isfinite(error) ? Json(error) : Json()},
                  {"unit", row.metric->unit},
                  {"reference", row.metric->reference}});
