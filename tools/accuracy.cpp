@@ -4,41 +4,18 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/scene/in_double.h"
-
 namespace huestep::tools {
 namespace {
 
-using Vec2d = Vec2T<double>;
-
 constexpr std::size_t smallScene = 256;   // bodies up to which every tick is measured
 constexpr std::uint64_t largeEvery = 30;  // ticks between measures of larger scenes
-
-double energyScale(const World& world) {
-    double mass = 0.0;
-    double kinetic = 0.0;
-    Vec2d low{1e300, 1e300};
-    Vec2d high{-1e300, -1e300};
-    for (std::size_t i = 0; i < world.bodies().size(); ++i) {
-        const BodyInfo& body = world.bodies()[i];
-        const BodyMotion& motion = world.motions()[i];
-        low = minOf(low, inDouble(motion.position));
-        high = maxOf(high, inDouble(motion.position));
-        if (!body.dynamic()) continue;
-        mass += static_cast<double>(body.mass);
-        kinetic += kineticEnergy(body, motion);
-    }
-    const double extent = std::max(world.bodies().empty() ? 0.0 : length(high - low), 1.0);
-    const double scale = mass * length(inDouble(world.info().gravity)) * extent + kinetic;
-    return scale > 0.0 ? scale : 1.0;
-}
 
 }  // namespace
 
 Accuracy::Accuracy(const World& start)
     : m_definitions(start),
       m_every(start.bodies().size() <= smallScene ? 1 : largeEvery),
-      m_scale(energyScale(start)),
+      m_scale(energyScale(start.info(), start.bodies(), start.motions())),
       m_pendulum(Pendulum::find(start)),
       m_ballistic(Ballistic::find(start)) {
     m_startEnergy =

@@ -47,5 +47,6 @@ void addReplay(Menu& menu);
 void addDiff(Menu& menu);
 void addBench(Menu& menu);
 void addChart(Menu& menu);
+void addStability(Menu& menu);
 
 }  // namespace huestep::tools

@@ -52,6 +52,7 @@ int runProgram(int count, char** words) {
     addBench(menu);
     addAccuracy(menu);
     addChart(menu);
+    addStability(menu);
     try {
         app.parse(count, words);
     } catch (const CLI::Success& help) {

@@ -14,39 +14,47 @@ std::size_t bodiesOf(const CatalogEntry& entry) {
     return scene ? scene->bodies.size() : 0;
 }
 
+Json asJson(std::span<const SceneParameter> parameters) {
+    Json json = Json::array();
+    for (const SceneParameter& p : parameters)
+        json.push_back({{"name", p.name},
+                        {"standard", p.standard},
+                        {"low", p.low},
+                        {"high", p.high},
+                        {"meaning", p.meaning}});
+    return json;
+}
+
 Json asJson(const CatalogEntry& entry) {
-    Json parameters = Json::array();
-    for (const SceneParameter& p : entry.parameters)
-        parameters.push_back({{"name", p.name},
-                              {"standard", p.standard},
-                              {"low", p.low},
-                              {"high", p.high},
-                              {"meaning", p.meaning}});
     return {{"name", entry.name},
             {"purpose", entry.purpose},
             {"bodies", bodiesOf(entry)},
             {"ticks", entry.ticks},
             {"scripted", entry.script != nullptr},
-            {"parameters", parameters}};
+            {"parameters", asJson(std::span(entry.parameters))}};
 }
 
 Answer showScenes(bool json) {
     if (json) {
         Json scenes = Json::array();
         for (const CatalogEntry& entry : sceneCatalog()) scenes.push_back(asJson(entry));
-        print(Json{{"scenes", scenes}});
+        print(Json{{"scenes", scenes}, {"common_parameters", asJson(commonParameters())}});
         return Exit::Done;
     }
     Table table({"scene", "bodies", "ticks", "host", "purpose"});
     Table parameters({"scene", "parameter", "standard", "from", "to", "meaning"});
+    const auto addParameters = [&](const std::string& scene, std::span<const SceneParameter> list) {
+        for (const SceneParameter& p : list)
+            parameters.add({scene, std::string(p.name), number(p.standard), number(p.low),
+                            number(p.high), std::string(p.meaning)});
+    };
     for (const CatalogEntry& entry : sceneCatalog()) {
         table.add({std::string(entry.name), std::to_string(bodiesOf(entry)),
                    std::to_string(entry.ticks), entry.script != nullptr ? "scripted" : "",
                    std::string(entry.purpose)});
-        for (const SceneParameter& p : entry.parameters)
-            parameters.add({std::string(entry.name), std::string(p.name), number(p.standard),
-                            number(p.low), number(p.high), std::string(p.meaning)});
+        addParameters(std::string(entry.name), entry.parameters);
     }
+    addParameters("every scene", commonParameters());
     table.print();
     std::printf(
         "scripted: the host moves, spawns and removes bodies as a function of the tick\n\n");

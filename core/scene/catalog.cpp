@@ -1,5 +1,6 @@
 #include "core/scene/catalog.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -9,6 +10,14 @@
 namespace huestep {
 
 namespace {
+
+/// What every scene takes, after its own.
+constexpr std::array<SceneParameter, 4> common{{
+    {"seed", 0, 0, 1e6, "unless 0, bodies start up to 1 mm and 1 mrad aside, drawn from it"},
+    {"turn", 0, -180, 180, "degrees that all is turned by, gravity too", false},
+    {"far", 0, 0, 500, "km from the origin", false},
+    {"hz", 60, 10, 10000, "ticks a second; a host goes by ticks", false},
+}};
 
 std::vector<CatalogEntry> makeCatalog() {
     using namespace scenes;
@@ -56,7 +65,7 @@ std::vector<CatalogEntry> makeCatalog() {
         {"joint_grid",
          "a net of discs on revolute joints, hung from 7 of them: joints alone",
          500,
-         {{"n", 100, 4, 300, "discs along a side"}},
+         {{"n", 100, 4, 300, "discs along a side"}, {"gravity", 1, 0.1, 10, "of 10 m/s²", false}},
          jointGrid},
         {"joints",
          "welds and slides with every part: rigid, springs, stops, motors",
@@ -176,27 +185,39 @@ std::string sceneNames() {
 }
 
 std::string parameterNames(const CatalogEntry& entry) {
-    if (entry.parameters.empty()) return "it has none";
-    std::string names;
+    std::string names = "it has ";
     for (const SceneParameter& parameter : entry.parameters) {
-        names += names.empty() ? "it has " : ", ";
+        names += parameter.name;
+        names += ", ";
+    }
+    names += entry.parameters.empty() ? "those of every scene:" : "and as every scene has";
+    for (const SceneParameter& parameter : common) {
+        names += &parameter == common.data() ? " " : ", ";
         names += parameter.name;
     }
     return names;
+}
+
+/// The entry's own parameters, then the common ones.
+std::vector<SceneParameter> allParameters(const CatalogEntry& entry) {
+    std::vector<SceneParameter> all = entry.parameters;
+    all.insert(all.end(), common.begin(), common.end());
+    return all;
 }
 
 /// Reads one `parameter=value` into its place in `values`.
 Status readParameter(const CatalogEntry& entry, std::string_view text, std::vector<double>& values,
                      std::vector<bool>& given) {
     const std::string scene(entry.name);
+    const std::vector<SceneParameter> parameters = allParameters(entry);
     const std::size_t equals = text.find('=');
     const std::string_view name = text.substr(0, equals);
     std::size_t place = 0;
-    while (place < entry.parameters.size() && entry.parameters[place].name != name) ++place;
-    if (place == entry.parameters.size()) {
+    while (place < parameters.size() && parameters[place].name != name) ++place;
+    if (place == parameters.size()) {
         return Error{scene + " has no parameter " + quoted(name) + "; " + parameterNames(entry)};
     }
-    const SceneParameter& parameter = entry.parameters[place];
+    const SceneParameter& parameter = parameters[place];
     const std::string path = scene + ": " + std::string(parameter.name);
     if (equals == std::string_view::npos) {
         return Error{path + " needs a value, as in " + std::string(parameter.name) + "=" +
@@ -223,8 +244,18 @@ Status readParameter(const CatalogEntry& entry, std::string_view text, std::vect
 }  // namespace
 
 std::span<const CatalogEntry> sceneCatalog() {
-    static const std::vector<CatalogEntry> catalog = makeCatalog();
+    static const std::vector<CatalogEntry> catalog = [] {
+        std::vector<CatalogEntry> all = makeCatalog();
+        for (CatalogEntry& entry : scenes::stabilityCatalog()) all.push_back(std::move(entry));
+        std::sort(all.begin(), all.end(),
+                  [](const CatalogEntry& a, const CatalogEntry& b) { return a.name < b.name; });
+        return all;
+    }();
     return catalog;
+}
+
+std::span<const SceneParameter> commonParameters() {
+    return common;
 }
 
 const CatalogEntry* findInCatalog(std::string_view text) {
@@ -237,11 +268,25 @@ const CatalogEntry* findInCatalog(std::string_view text) {
 
 namespace {
 
-/// An entry of the catalogue and a value for each of its parameters.
+/// An entry of the catalogue, a value for each of its parameters, and what the common ones say.
 struct Choice {
     const CatalogEntry* entry = nullptr;
     std::vector<double> values;
+    Placement placement;
+    float stepSeconds = 0.0f;  ///< s; 0: the scene's own
 };
+
+/// Cuts the values of the common parameters off the others.
+Choice choiceOf(const CatalogEntry& entry, std::vector<double> values,
+                const std::vector<bool>& given) {
+    const std::size_t own = entry.parameters.size();
+    Choice choice{&entry, {}, {}, 0.0f};
+    choice.placement = {static_cast<std::uint64_t>(values[own]), values[own + 1], values[own + 2]};
+    if (given[own + 3]) choice.stepSeconds = static_cast<float>(1.0 / values[own + 3]);
+    values.resize(own);
+    choice.values = std::move(values);
+    return choice;
+}
 
 Result<Choice> choose(std::string_view text) {
     const CatalogEntry* entry = findInCatalog(text);
@@ -254,7 +299,9 @@ Result<Choice> choose(std::string_view text) {
         return Error{"a scene's name and parameters take at most 256 characters"};
     }
     std::vector<double> values;
-    for (const SceneParameter& parameter : entry->parameters) values.push_back(parameter.standard);
+    for (const SceneParameter& parameter : allParameters(*entry)) {
+        values.push_back(parameter.standard);
+    }
     std::vector<bool> given(values.size(), false);
     std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
     if (colon != std::string_view::npos && rest.empty()) {
@@ -271,7 +318,7 @@ Result<Choice> choose(std::string_view text) {
             return Error{std::string(entry->name) + ": nothing stands after the last comma"};
         }
     }
-    return Choice{entry, std::move(values)};
+    return choiceOf(*entry, std::move(values), given);
 }
 
 }  // namespace
@@ -280,6 +327,8 @@ Result<Scene> sceneFromCatalog(std::string_view text) {
     const Result<Choice> choice = choose(text);
     if (!choice) return choice.error();
     Scene scene = choice->entry->build(choice->values);
+    if (choice->stepSeconds > 0.0f) scene.stepSeconds = choice->stepSeconds;
+    place(scene, choice->placement);
     scene.name = text;
     return scene;
 }
@@ -287,7 +336,13 @@ Result<Scene> sceneFromCatalog(std::string_view text) {
 Result<Script> scriptFromCatalog(std::string_view text) {
     const Result<Choice> choice = choose(text);
     if (!choice) return choice.error();
-    return Script(choice->entry->script, choice->values);
+    return Script(choice->entry->script, choice->values, choice->placement);
+}
+
+Result<Placement> placementFromCatalog(std::string_view text) {
+    const Result<Choice> choice = choose(text);
+    if (!choice) return choice.error();
+    return choice->placement;
 }
 
 }  // namespace huestep

@@ -34,6 +34,10 @@ struct CatalogEntry {
 /// All built-in scenes, by name.
 std::span<const CatalogEntry> sceneCatalog();
 
+/// What every scene takes beside its own parameters: a `Placement`, and ticks a second. What hosts
+/// do goes by ticks.
+std::span<const SceneParameter> commonParameters();
+
 /// A scene from `name` or `name:parameter=value,parameter=value`; it passes `check`, and its name
 /// is the text. Numbers are read as in C, without locale. The sentence of a failure names
 /// the unknown scene or parameter, or the value out of range, and what there is instead.
@@ -42,6 +46,9 @@ Result<Scene> sceneFromCatalog(std::string_view text);
 /// What the host of the scene of this text does; of most scenes, nothing. Fails as
 /// `sceneFromCatalog` does.
 Result<Script> scriptFromCatalog(std::string_view text);
+
+/// How the scene of this text is placed. Fails as `sceneFromCatalog` does.
+Result<Placement> placementFromCatalog(std::string_view text);
 
 /// The entry that `text` names, parameters aside; null if there is none.
 const CatalogEntry* findInCatalog(std::string_view text);

@@ -31,20 +31,6 @@ std::uint32_t placeOf(std::span<const BodyInfo> bodies, BodyId id) {
     return static_cast<std::uint32_t>(found - bodies.begin());
 }
 
-double energyOf(const WorldInfo& world, std::span<const BodyInfo> bodies,
-                std::span<const BodyMotion> motions) {
-    const Vec2d gravity = inDouble(world.gravity);
-    double energy = 0.0;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        if (!bodies[i].dynamic()) continue;
-        const double weight =
-            static_cast<double>(bodies[i].mass) * static_cast<double>(bodies[i].gravityScale);
-        energy += kineticEnergy(bodies[i], motions[i]);
-        energy -= weight * dot(gravity, inDouble(motions[i].position));
-    }
-    return energy;
-}
-
 /// How far a coordinate is outside of the joint's limit.
 double outsideOf(const JointInfo& joint, double coordinate) {
     return std::max({0.0, static_cast<double>(joint.lower) - coordinate,
@@ -189,18 +175,56 @@ double kineticEnergy(const BodyInfo& body, const BodyMotion& motion) {
            0.5 * static_cast<double>(body.inertia) * spin * spin;
 }
 
+double energyScale(const WorldInfo& world, std::span<const BodyInfo> bodies,
+                   std::span<const BodyMotion> motions) {
+    double mass = 0.0;
+    double kinetic = 0.0;
+    Vec2d low{1e300, 1e300};
+    Vec2d high{-1e300, -1e300};
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        low = minOf(low, inDouble(motions[i].position));
+        high = maxOf(high, inDouble(motions[i].position));
+        if (!bodies[i].dynamic()) continue;
+        mass += static_cast<double>(bodies[i].mass);
+        kinetic += kineticEnergy(bodies[i], motions[i]);
+    }
+    const double extent = std::max(bodies.empty() ? 0.0 : length(high - low), 1.0);
+    const double scale = mass * length(inDouble(world.gravity)) * extent + kinetic;
+    return scale > 0.0 ? scale : 1.0;
+}
+
+double energyOf(const WorldInfo& world, std::span<const BodyInfo> bodies,
+                std::span<const BodyMotion> motions) {
+    const Vec2d gravity = inDouble(world.gravity);
+    double energy = 0.0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (!bodies[i].dynamic()) continue;
+        const double weight =
+            static_cast<double>(bodies[i].mass) * static_cast<double>(bodies[i].gravityScale);
+        energy += kineticEnergy(bodies[i], motions[i]);
+        energy -= weight * dot(gravity, inDouble(motions[i].position));
+    }
+    return energy;
+}
+
+double maxJointErrorOf(std::span<const BodyInfo> bodies, std::span<const JointInfo> joints,
+                       std::span<const BodyMotion> motions) {
+    double most = 0.0;
+    for (const JointInfo& joint : joints) {
+        const std::uint32_t a = placeOf(bodies, joint.bodyA);
+        const std::uint32_t b = placeOf(bodies, joint.bodyB);
+        if (a == nowhere || b == nowhere) continue;
+        most = std::max(most, errorOf(joint, poseOf(motions[a]), poseOf(motions[b])));
+    }
+    return most;
+}
+
 Measures measure(const WorldInfo& world, std::span<const BodyInfo> bodies,
                  std::span<const ShapeInfo> shapes, std::span<const JointInfo> joints,
                  std::span<const BodyMotion> motions) {
     Measures result;
     result.energy = energyOf(world, bodies, motions);
-    for (const JointInfo& joint : joints) {
-        const std::uint32_t a = placeOf(bodies, joint.bodyA);
-        const std::uint32_t b = placeOf(bodies, joint.bodyB);
-        if (a == nowhere || b == nowhere) continue;
-        const double error = errorOf(joint, poseOf(motions[a]), poseOf(motions[b]));
-        result.maxJointError = std::max(result.maxJointError, error);
-    }
+    result.maxJointError = maxJointErrorOf(bodies, joints, motions);
     measurePenetration(bodies, shapes, joints, motions, result);
     return result;
 }

@@ -24,6 +24,18 @@ struct Measures {
 /// J: m v²/2 + I ω²/2.
 double kineticEnergy(const BodyInfo& body, const BodyMotion& motion);
 
+/// J: what drift and injection of energy are measured against (E_scale): the weight of the dynamic
+/// bodies times the diagonal of the box around all centres, at least 1 m, plus their kinetic
+/// energy. 1 where that is 0.
+double energyScale(const WorldInfo& world, std::span<const BodyInfo> bodies,
+                   std::span<const BodyMotion> motions);
+
+/// The parts of `measure` by themselves.
+double energyOf(const WorldInfo& world, std::span<const BodyInfo> bodies,
+                std::span<const BodyMotion> motions);
+double maxJointErrorOf(std::span<const BodyInfo> bodies, std::span<const JointInfo> joints,
+                       std::span<const BodyMotion> motions);
+
 /// O(n log n) with a sweep along x: 22,000 bodies in pyramids take some tens of milliseconds.
 /// `bodies`, `shapes`, `joints` and `motions` as `World` shows them: sorted by id, places matching.
 Measures measure(const WorldInfo& world, std::span<const BodyInfo> bodies,

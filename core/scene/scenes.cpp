@@ -6,6 +6,18 @@
 
 namespace huestep::scenes {
 
+Scene awake() {
+    Scene scene;
+    scene.sleep = false;
+    return scene;
+}
+
+void addFloor(Scene& scene, float halfWidth, float friction) {
+    BodyDef floor = bodyOf(BodyType::Static, {0.0f, -1.0f}, ShapeDef::box(halfWidth, 1.0f));
+    floor.shapes[0].material.friction = friction;
+    add(scene, floor);
+}
+
 std::uint32_t add(Scene& scene, const BodyDef& body) {
     scene.bodies.push_back(body);
     return static_cast<std::uint32_t>(scene.bodies.size() - 1);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/scene/catalog.h"
 #include "core/scene/scene.h"
 #include "core/world/command.h"
 
@@ -42,12 +43,42 @@ Scene bounce(Values values);
 Scene ramp(Values values);
 Scene slide(Values values);
 
+// Stability: scenes that solvers fall over (physics page, "Stability suite").
+Scene arch(Values values);
+Scene ballAndChain(Values values);
+Scene bigBox(Values values);
+Scene bridge(Values values);
+Scene bullet(Values values);
+Scene cardHouse(Values values);
+Scene confined(Values values);
+Scene dominoes(Values values);
+Scene droppedStack(Values values);
+Scene heavyPyramids(Values values);
+Scene heavyTop(Values values);
+Scene hub(Values values);
+Scene overlap(Values values);
+Scene release(Values values);
+Scene stretchedChain(Values values);
+Scene tower(Values values);
+Scene whirlingRod(Values values);
+void dominoesHost(Values values, std::uint64_t tick, std::vector<Action>& actions);
+void hubHost(Values values, std::uint64_t tick, std::vector<Action>& actions);
+void releaseHost(Values values, std::uint64_t tick, std::vector<Action>& actions);
+/// Their entries, in any order.
+std::vector<CatalogEntry> stabilityCatalog();
+
 // Everything at once.
 Scene hinges(Values values);
 Scene joints(Values values);
 Scene mixed(Values values);
 Scene sandbox(Values values);
 Scene terrain(Values values);
+
+/// An empty scene in which nothing sleeps, so that what rests does so by itself.
+Scene awake();
+
+/// Adds a thick floor whose surface is y = 0.
+void addFloor(Scene& scene, float halfWidth, float friction = 0.6f);
 
 /// Adds a body and returns its place.
 std::uint32_t add(Scene& scene, const BodyDef& body);

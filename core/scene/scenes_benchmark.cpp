@@ -100,6 +100,7 @@ Scene jointGrid(Values values) {
     left.anchorB = {-0.5f, 0.0f};
     Scene scene;
     scene.sleep = false;
+    scene.gravity.y *= static_cast<float>(values[1]);
     for (std::uint32_t k = 0; k < n; ++k) {
         for (std::uint32_t i = 0; i < n; ++i) {
             const bool held = i == 0 && k + 3 >= n / 2 && k <= n / 2 + 3;

@@ -5,12 +5,14 @@
 
 namespace huestep {
 
-Script::Script(Rule rule, std::vector<double> values) : m_rule(rule), m_values(std::move(values)) {}
+Script::Script(Rule rule, std::vector<double> values, const Placement& placement)
+    : m_rule(rule), m_values(std::move(values)), m_placement(placement) {}
 
 std::vector<Action> Script::actions(std::uint64_t tick) const {
     std::vector<Action> actions;
     if (m_rule != nullptr) m_rule(m_values, tick, actions);
     assert(actions.size() <= caps::maxCommands);
+    for (Action& action : actions) place(action, m_placement);
     return actions;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/scene/placement.h"
 #include "core/world/command.h"
 
 namespace huestep {
@@ -28,8 +29,8 @@ class Script {
 
     /// Of a host that does nothing.
     Script() = default;
-    /// `rule` may be null, and then does nothing.
-    Script(Rule rule, std::vector<double> values);
+    /// `rule` may be null, and then does nothing. What it does is placed as its scene is.
+    Script(Rule rule, std::vector<double> values, const Placement& placement = {});
 
     /// Whether it ever does anything.
     explicit operator bool() const { return m_rule != nullptr; }
@@ -42,6 +43,7 @@ class Script {
  private:
     Rule m_rule = nullptr;
     std::vector<double> m_values;
+    Placement m_placement;
 };
 
 }  // namespace huestep

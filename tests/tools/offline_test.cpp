@@ -11,7 +11,7 @@ namespace {
 
 TEST(Help, EverySubcommandAnswersWithAnExample) {
     for (const char* name :
-         {"scenes", "run", "verify", "serve", "join", "replay", "diff", "bench"}) {
+         {"scenes", "run", "verify", "serve", "join", "replay", "diff", "bench", "stability"}) {
         const Ended ended = huestep({name, "--help"});
         EXPECT_EQ(ended.status, 0) << name;
         const std::string example = after(ended.out, "Example:\n");
@@ -129,7 +129,7 @@ TEST(Scenes, SayWhichOfThemAreScripted) {
     std::set<std::string> scripted;
     for (const Json& scene : document["scenes"])
         if (scene["scripted"] == true) scripted.insert(scene["name"]);
-    EXPECT_EQ(scripted, (std::set<std::string>{"junkyard", "rain"}));
+    EXPECT_EQ(scripted, (std::set<std::string>{"dominoes", "hub", "junkyard", "rain", "release"}));
 }
 
 TEST(Diff, NamesTheFieldInWhichTwoSnapshotsDiffer) {

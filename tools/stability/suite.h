@@ -20,7 +20,8 @@ namespace huestep::tools {
 struct StabilityConfiguration {
     std::string engine = "huestep";    ///< of `engineNames()`
     std::string method = "soft-step";  ///< of `allMethods()`; engines with their own: as theirs
-    std::uint32_t substeps = 4;        ///< or iterations; engines that take none: no matter
+    /// Or iterations; 0: as needed, planned by Huestep. Engines that take none: no matter.
+    std::uint32_t substeps = 0;
 };
 
 /// How much of the suite is run.
@@ -34,6 +35,9 @@ struct StabilityOptions {
     StabilityConfiguration configuration;
     StabilityEffort effort = StabilityEffort::Standard;
     std::vector<int> rows;  ///< 1 to 28, in any order; empty: all
+    /// Of rows 1 to 26 only scenes that begin with one of these: "stack" or "stack:n=10"; empty:
+    /// all. Whole words of a scene's text are compared.
+    std::vector<std::string> scenes;
     /// Also find the smallest number of substeps that passes: each scene is run again with 1, 2, 4
     /// and so on up to 32 until it passes. Of engines that take substeps.
     bool frontier = true;
@@ -56,6 +60,7 @@ struct StabilityVerdict {
     std::string what;  ///< what the value is: "farthest that a body moved"
     bool judged = true;   ///< false: reported only, the row may pass without it
     std::string hashes;   ///< what was compared and equal: "3,600 ticks on 1, 2, 3 threads, …"
+    std::string replay;   ///< the command that plays the scene again, of a saved failure that one
     std::string savedTo;  ///< folder of this failure, under `saveTo`; empty: none
 };
 

@@ -53,9 +53,9 @@ Script scriptOf(const std::string& text) {
 }
 
 TEST(Script, OfEveryScriptedSceneHasAllItsCommandsApplied) {
-    for (const std::string text :
-         {"junkyard:columns=4,rows=3", "rain:floors=2,columns=3,group=2,period=9",
-          "rain:floors=1,columns=40,group=5,period=1"}) {
+    for (const std::string text : {"dominoes:turn=30", "hub:n=9", "junkyard:columns=4,rows=3",
+                                   "release:after=7", "rain:floors=2,columns=3,group=2,period=9",
+                                   "rain:floors=1,columns=40,group=5,period=1"}) {
         World world = worldOf(text);
         const Script script = scriptOf(text);
         EXPECT_EQ(world.info().flags & WorldInfo::players, 0u)
@@ -69,7 +69,9 @@ TEST(Script, OfEveryScriptedSceneHasAllItsCommandsApplied) {
         }
     }
     for (const CatalogEntry& entry : sceneCatalog()) {
-        const bool tried = entry.name == "junkyard" || entry.name == "rain";
+        const bool tried = entry.name == "dominoes" || entry.name == "hub" ||
+                           entry.name == "junkyard" || entry.name == "rain" ||
+                           entry.name == "release";
         EXPECT_EQ(entry.script != nullptr, tried) << entry.name << " is missing above";
     }
 }
