@@ -96,6 +96,7 @@ enum Method {
   locks @6;       # the soft step, constraints to all threads in key order, a lock a body
   atomics @7;     # likewise, with atomic additions to bodies instead of locks
   avbd @8;        # augmented vertex block descent: positions body by body, backward Euler
+  direct @9;      # joint trees at once, all else as in softStep
 }
 
 struct Joint {

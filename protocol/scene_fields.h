@@ -27,10 +27,9 @@ inline constexpr auto wordsOf<JointKind> =
     std::to_array<std::string_view>({"revolute", "distance", "mouse", "weld", "prismatic"});
 
 template <>
-inline constexpr auto wordsOf<Method> = std::to_array<std::string_view>({"softStep", "sequential",
-                                                                         "jacobi", "jacobiSplit",
-                                                                         "pgs", "pgsNgs", "locks",
-                                                                         "atomics", "avbd"});
+inline constexpr auto wordsOf<Method> =
+    std::to_array<std::string_view>({"softStep", "sequential", "jacobi", "jacobiSplit", "pgs",
+                                     "pgsNgs", "locks", "atomics", "avbd", "direct"});
 
 template <class Visitor>
 void visitFields(Visitor& v, std::type_identity<Vec2>) {

@@ -101,6 +101,7 @@ void Builder::packBatches() {
             batch.ramp = ramp;
             batch.gentle = gentle;
             batch.substeps = planned ? substepsOf(effort) : demand.substeps;
+            batch.trees = demand.trees;
             plan.batches.push_back(batch);
             batchOf[body] = fresh;
             if (!giant) open = fresh;
@@ -217,7 +218,7 @@ void Builder::layOut(std::uint32_t batch, std::span<const ConstraintBodies> plac
     const std::uint32_t begin = linkStart[batch];
     const auto kindOf = [&](std::uint32_t link, std::uint8_t colour) {
         if (link >= plan.jointLinks) return ContactLane;
-        const bool lanes = demand.pinLanes || !isSerial(colour);
+        const bool lanes = (demand.pinLanes || !isSerial(colour)) && !plan.batches[batch].trees;
         return plan.links[link].revolute && lanes ? RevoluteLane : Joint;
     };
     std::array<std::array<std::uint32_t, 3>, colourCount> counts{};

@@ -49,6 +49,7 @@ struct Batch {
     std::uint8_t ramp = 0;    ///< see `rampOf`
     bool still = false;       ///< whether its bodies are known to be at that level, and not calm
     bool giant = false;
+    bool trees = false;  ///< its joint trees are solved at once, so its joints are not in lanes
 };
 
 /// Constraints that a batch may have: about 150 kB of rows, which a core's second-level cache
@@ -107,6 +108,7 @@ struct PlanDemand {
     bool hubs = true;       ///< buckets for them; else what finds no colour goes to the overflow
     bool pinLanes = false;  ///< revolutes fill lanes in the overflow too
     bool incidence = false;
+    bool trees = false;  ///< whether joint trees are solved at once, in every batch
 };
 
 /// Makes the plan. `links` and `awake` are moved in; bodies that are not awake are read by the

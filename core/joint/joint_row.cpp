@@ -71,8 +71,10 @@ void solveRevolute(SolverBody* bodies, JointRow& row, const JointPass& pass) {
         solveLimit(b, axis, 1.0f, angle - row.lower, pass.inverseH, pass.soft, row.impulses.lower);
         solveLimit(b, axis, -1.0f, row.upper - angle, pass.inverseH, pass.soft, row.impulses.upper);
     }
-    const Geometry g = geometry(bodies, row);
-    PointPart::solve(b, g.rA, g.rB, g.between, pass.soft, row.impulses.point);
+    if (!row.direct) {
+        const Geometry g = geometry(bodies, row);
+        PointPart::solve(b, g.rA, g.rB, g.between, pass.soft, row.impulses.point);
+    }
     store(bodies, row, b);
 }
 
@@ -97,7 +99,7 @@ void solveDistance(SolverBody* bodies, JointRow& row, const JointPass& pass) {
         solveLimit(b, line, 1.0f, now - row.lower, pass.inverseH, pass.soft, row.impulses.lower);
         solveLimit(b, line, -1.0f, row.upper - now, pass.inverseH, pass.soft, row.impulses.upper);
     }
-    if (!springs && !ranges) {
+    if (!springs && !ranges && !row.direct) {
         solveHold(b, line, now - row.length, pass.soft, row.impulses.point.x);
     }
     store(bodies, row, b);
@@ -109,7 +111,9 @@ void solveWeld(SolverBody* bodies, JointRow& row, const JointPass& pass) {
     const float angle = angleNow(bodies, row);
     if ((row.flags & JointInfo::spring) != 0) {
         solveHold(b, AxisPart{}, angle, row.spring, row.impulses.spring);
-        PointPart::solve(b, g.rA, g.rB, g.between, pass.soft, row.impulses.point);
+        if (!row.direct) {
+            PointPart::solve(b, g.rA, g.rB, g.between, pass.soft, row.impulses.point);
+        }
     } else {
         FixedPart::solve(b, g.rA, g.rB, g.between, angle, pass.soft, row.impulses.point,
                          row.impulses.spring);
@@ -143,6 +147,7 @@ void solvePrismatic(SolverBody* bodies, JointRow& row, const JointPass& pass) {
         solveLimit(b, along, 1.0f, now - row.lower, pass.inverseH, pass.soft, row.impulses.lower);
         solveLimit(b, along, -1.0f, row.upper - now, pass.inverseH, pass.soft, row.impulses.upper);
     }
+    if (row.direct) return store(bodies, row, b);
     SlidePart::solve(b, across, dot(across.u, g.between), angleNow(bodies, row), pass.soft,
                      row.impulses.point);
     store(bodies, row, b);
@@ -157,6 +162,10 @@ void solveMouse(SolverBody* bodies, JointRow& row, const JointPass& pass) {
 }
 
 }  // namespace
+
+bool hasParts(const JointRow& row) {
+    return (row.flags & (JointInfo::spring | JointInfo::motor | JointInfo::limit)) != 0;
+}
 
 JointRow prepareJoint(const JointInfo& info, const JointImpulses& impulses, std::uint32_t place,
                       const Pose& poseA, const Pose& poseB, float h) {
@@ -181,9 +190,11 @@ JointRow prepareJoint(const JointInfo& info, const JointImpulses& impulses, std:
 }
 
 void warmStartJoint(SolverBody* bodies, const JointRow& row) {
+    if (row.direct && !hasParts(row)) return;
     JointBodies b = load(bodies, row);
     const Geometry g = geometry(bodies, row);
-    const JointImpulses& l = row.impulses;
+    JointImpulses l = row.impulses;
+    if (row.direct) l.point = {};
     const float axial = l.spring + l.motor + l.lower - l.upper;
     if (row.kind == JointKind::Distance) {
         float now = 0;
@@ -202,6 +213,7 @@ void warmStartJoint(SolverBody* bodies, const JointRow& row) {
 }
 
 void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass) {
+    if (row.direct && !hasParts(row)) return;
     switch (row.kind) {
         case JointKind::Revolute:
             return solveRevolute(bodies, row, pass);

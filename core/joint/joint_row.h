@@ -13,6 +13,7 @@ struct JointRow {
     JointKind kind = JointKind::Revolute;
     std::uint32_t flags = 0;  ///< of JointInfo
     std::uint32_t joint = 0;  ///< place in the world's joints
+    bool direct = false;      ///< its rigid part is solved with its tree (solver/joint_trees.h)
     BodyPlace bodyA = fixedWorld;
     BodyPlace bodyB = fixedWorld;
     float mA = 0, iA = 0, mB = 0, iB = 0;
@@ -38,6 +39,9 @@ struct JointPass {
 /// `poseA`, `poseB`: at the start of the step; the fixed world's pose is the identity.
 JointRow prepareJoint(const JointInfo& info, const JointImpulses& impulses, std::uint32_t place,
                       const Pose& poseA, const Pose& poseB, float h);
+
+/// Whether the joint has a spring, a running motor or a limit.
+bool hasParts(const JointRow& row);
 
 void warmStartJoint(SolverBody* bodies, const JointRow& row);
 void solveJoint(SolverBody* bodies, JointRow& row, const JointPass& pass);

@@ -217,8 +217,9 @@ enum class Method : std::uint8_t {
     Locks,        ///< the soft step, constraints to all threads in key order, a lock a body
     Atomics,      ///< likewise, with atomic additions to bodies instead of locks
     Avbd,         ///< augmented vertex block descent: positions body by body, backward Euler
+    Direct,       ///< joint trees at once, all else as in the soft step
 };
-inline constexpr Method lastMethod = Method::Avbd;
+inline constexpr Method lastMethod = Method::Direct;
 
 /// How far a world may be off at rest, where its substeps are planned: m, 0 or [1e-6, 1]. 0 is
 /// *visual*: 5 mm, or 1 % of the smaller body if that is more.

@@ -91,6 +91,14 @@ constexpr std::array methods{
                  .deterministic = true,
                  .substepping = false,
                  .incidence = true},
+    MethodTraits{.method = Method::Direct,
+                 .name = "direct",
+                 .summary = "block LDLT of joint trees in every substep, all else as in soft-step",
+                 .solve = solveSoftStep,
+                 .colours = true,
+                 .teams = true,
+                 .deterministic = true,
+                 .trees = true},
 };
 
 }  // namespace
@@ -102,6 +110,7 @@ PlanDemand demandOf(const MethodTraits& method, std::uint32_t substeps) {
     demand.hubs = method.hubs;
     demand.pinLanes = method.pinLanes;
     demand.incidence = method.incidence;
+    demand.trees = method.trees;
     return demand;
 }
 

@@ -17,6 +17,7 @@ namespace huestep {
 
 struct ContactKernels;
 struct RevoluteKernels;
+class JointTrees;
 
 /// Who works on a batch: one of `workers` that all come here, and meet at barriers.
 struct Team {
@@ -53,6 +54,7 @@ struct BatchTask {
     ContactFeatures features;  ///< of all contact rows
     const ContactKernels& contacts;
     const RevoluteKernels& revolutes;
+    JointTrees* trees = nullptr;  ///< of the batch, if it has any
 };
 
 /// Brings the batch's bodies to the end of the step and leaves the impulses in its rows.
@@ -68,9 +70,10 @@ struct MethodTraits {
     bool teams;               ///< whether several workers may go through one batch together
     bool deterministic;       ///< else the bits depend on how threads meet
     bool substepping = true;  ///< else one step of Δt; a scene's substeps are iterations
-    bool hubs = true;         ///< as in `PlanDemand`, the next two too
+    bool hubs = true;         ///< as in `PlanDemand`, the next three too
     bool pinLanes = false;
     bool incidence = false;
+    bool trees = false;
     /// Makes room for what the method needs, before its batches; null: nothing.
     void (*fit)(MethodMemory& memory, const Plan& plan) = nullptr;
 };

@@ -98,6 +98,7 @@ void Rows::fit(const Plan& plan) {
     revolutes.resize(plan.revoluteOfLane.size() / blockLanes);
     blocks.resize(plan.contactOfLane.size() / blockLanes);
     blockFeatures.resize(blocks.size());
+    trees.resize(std::max(trees.size(), plan.batches.size()));
     bodies[0] = {};
     poses[0] = {};
     sources[0] = {};
@@ -340,7 +341,7 @@ void Rows::settleContacts(const Plan& plan, const SolverWorld& world, const Cont
 
 void Rows::storeJoints(const SolverWorld& world, Range range) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        if (world.planned) joints[i].strain = strainOf(joints[i]);
+        if (world.planned) joints[i].strain = joints[i].direct ? 0.0f : strainOf(joints[i]);
         world.jointImpulses[joints[i].joint] = storedImpulses(joints[i]);
     }
 }

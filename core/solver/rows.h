@@ -12,6 +12,7 @@
 #include "core/joint/joint_row.h"
 #include "core/joint/revolute_block.h"
 #include "core/solver/contact_block.h"
+#include "core/solver/joint_trees.h"
 #include "core/solver/simd.h"
 #include "core/solver/solver_world.h"
 #include "core/world/event.h"
@@ -67,6 +68,7 @@ class Rows {
     std::vector<ContactFeatures> blockFeatures;  ///< by block
     std::vector<JointRow> joints;                ///< in solving order
     std::vector<RevoluteBlock> revolutes;
+    std::vector<JointTrees> trees;  ///< by batch; of those that have any to solve
     MethodMemory memory;
 
     /// Room for all rows of a plan, and the fixed world.

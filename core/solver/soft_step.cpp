@@ -2,6 +2,7 @@
 
 #include "core/solver/body_motion.h"
 #include "core/solver/effort.h"
+#include "core/solver/joint_trees.h"
 
 namespace huestep {
 
@@ -25,6 +26,9 @@ class SoftStep {
 
  private:
     void lagBehind(std::uint32_t place, Vec2 pushed, bool first);
+    /// Joint trees are one worker's; without any nothing happens.
+    template <class F>
+    void onTrees(F&& f);
     void start(std::uint32_t place, bool first);
 
     const BatchTask& m_task;
@@ -68,6 +72,13 @@ void SoftStep::lagBehind(std::uint32_t place, Vec2 pushed, bool first) {
     s.lag = steady ? 0.5f * change : Vec2{};
 }
 
+template <class F>
+void SoftStep::onTrees(F&& f) {
+    if (m_task.trees == nullptr) return;
+    if (m_team.worker == 0) f(*m_task.trees);
+    m_team.barrier();
+}
+
 /// The last impulses start the substep. Contact rows keep their arms over the step, so what they
 /// would do to a body is what they did to it in the last substep, and a body without joints carries
 /// that over by itself (performance page, 5). Joints turn their arms.
@@ -89,24 +100,35 @@ void SoftStep::run() {
     const Batch& batch = m_task.batch;
     const bool hasJoints =
         batch.firstJoint < batch.endJoint || batch.firstRevoluteBlock < batch.endRevoluteBlock;
+    const bool sweeps = m_task.trees == nullptr || m_task.trees->leavesWork();
     for (std::uint32_t substep = 0; substep < m_task.substeps; ++substep) {
         const bool first = substep == 0;
         overBodies(m_task, m_team, [&](std::uint32_t place) { start(place, first); });
-        if (first) {
+        if (!sweeps) {
+            // Trees start cold.
+        } else if (first) {
             m_sweeper.sweep(warmStartSweep, m_biased);
         } else if (hasJoints) {
             m_sweeper.sweep(warmStartAgainSweep, m_biased);
         }
-        m_sweeper.sweep(solveSweep, m_biased);
+        onTrees([&](JointTrees& trees) { trees.begin(m_rows, m_h); });
+        if (sweeps) {
+            m_sweeper.sweep(solveSweep, m_biased);
+            onTrees([&](JointTrees& trees) { trees.solvePlaces(m_rows); });
+        }
         overBodies(m_task, m_team, [&](std::uint32_t place) {
             advance(m_rows.bodies[place], m_rows.sources[place].lag, m_h);
         });
+        onTrees([&](JointTrees& trees) { trees.turn(m_rows); });
+        if (!sweeps) continue;
         m_sweeper.sweep(relaxSweep, m_relaxed);
         for (int k = 0; first && m_task.features.cold && k < coldPasses; ++k) {
             m_sweeper.sweep(relaxColdSweep, m_relaxed);
         }
+        const bool last = substep + 1 == m_task.substeps;
+        if (last && m_task.features.restitution) m_sweeper.sweep(restituteSweep, m_relaxed);
+        onTrees([&](JointTrees& trees) { trees.solveVelocities(m_rows); });
     }
-    if (m_task.features.restitution) m_sweeper.sweep(restituteSweep, m_relaxed);
 }
 
 }  // namespace

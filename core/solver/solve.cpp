@@ -26,6 +26,14 @@ struct Job {
         if (!method.substepping) return world.stepSeconds;
         return world.stepSeconds / static_cast<float>(batch.substeps);
     }
+    [[nodiscard]] JointTrees* treesOf(const Batch& batch) const {
+        if (!batch.trees || batch.firstJoint == batch.endJoint) return nullptr;
+        return &rows.trees[static_cast<std::size_t>(&batch - plan.batches.data())];
+    }
+    /// Of joints whose rows are made.
+    void buildTrees(const Batch& batch) const {
+        if (JointTrees* trees = treesOf(batch)) trees->build(plan, batch, rows);
+    }
     [[nodiscard]] BatchTask taskOf(const Batch& batch, ContactFeatures features) const {
         return {plan,
                 batch,
@@ -36,7 +44,8 @@ struct Job {
                 batch.gentle,
                 features,
                 contactKernels(simd),
-                revoluteKernels(simd)};
+                revoluteKernels(simd),
+                treesOf(batch)};
     }
 };
 
@@ -59,6 +68,7 @@ void solveGiant(const Job& job, const Batch& batch, Executor* executor,
          [&](Rows::Range range, std::uint32_t) {
              job.rows.prepareRevolutes(job.plan, job.world, batch, h, range);
          });
+    job.buildTrees(batch);
     const std::uint32_t blocks = batch.endBlock - batch.firstBlock;
     const ContactKernels& kernels = contactKernels(job.simd);
     auto features = perBlock<ContactFeatures>(blocks, blockGrain);
@@ -106,6 +116,7 @@ void solveWhole(const Job& job, const Batch& batch, std::vector<ContactHit>& hit
     rows.prepareBodies(job.plan, job.world, h, {batch.firstPlace, batch.endCopy});
     rows.prepareJoints(job.plan, job.world, batch, h, joints);
     rows.prepareRevolutes(job.plan, job.world, batch, h, revolutes);
+    job.buildTrees(batch);
     rows.prepareContacts(job.plan, job.world, batch, kernels, blocks, features);
     job.method.solve(job.taskOf(batch, features), {});
     rows.settleContacts(job.plan, job.world, kernels, blocks, hits);
