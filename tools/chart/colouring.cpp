@@ -44,7 +44,7 @@ std::vector<Sample> benchmarksOf(Extent extent) {
                 {"many_pyramids:rows=5,columns=5,base=8", 30},
                 {"joint_grid:n=40", 30},
                 {"tumbler:count=20", 120},
-                {"spinner:bodies=800", 120},
+                {"spinner:bodies=300", 120},
                 {"compounds:columns=12,rows=20", 120}};
     return {{"small", 120},     {"pyramid", 60},   {"many_pyramids", 60}, {"joint_grid", 60},
             {"tumbler", 300},   {"spinner", 200},  {"washer", 200},       {"smash", 120},
