@@ -41,8 +41,9 @@ std::string reasonOf(const IslandView& island, const StepLayout& layout) {
 
 /// Why an island got its substeps.
 std::string effortOf(const IslandView& island) {
-    if (island.strain == 0.0f) return std::to_string(island.substeps);
-    return std::to_string(island.substeps) + (island.gentle ? ", gentle" : "") + ": a " +
+    if (island.strain == 0.0f && !island.trees) return std::to_string(island.substeps);
+    return std::to_string(island.substeps) + (island.gentle ? ", gentle" : "") +
+           (island.trees ? ", joint trees at once" : "") + ": a " +
            (island.strainedJoint ? "joint" : "contact") + " gives way by " +
            number(static_cast<double>(island.strain)) + " of the need";
 }
@@ -72,6 +73,7 @@ Json explanation(const StepLayout& layout) {
                            {"batch_constraints", island.batchConstraints},
                            {"substeps", island.substeps},
                            {"gentle", island.gentle},
+                           {"joint_trees_at_once", island.trees},
                            {"strain", island.strain},
                            {"strained_row", island.strainedJoint ? "joint" : "contact"},
                            {"why", reasonOf(island, layout)}});

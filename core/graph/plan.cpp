@@ -46,11 +46,13 @@ void Builder::findAllIslands() {
     plan.islandOf.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) plan.islandOf[i] = sets.find(i);
     plan.constraintsOf.assign(count, 0);
-    plan.jointed.assign(count, 0);
+    plan.jointsOf.assign(count, 0);
+    plan.bodiesOf.assign(count, 0);
+    for (const std::uint32_t body : plan.awake) ++plan.bodiesOf[plan.islandOf[body]];
     for (std::uint32_t i = 0; i < plan.links.size(); ++i) {
         const std::uint32_t island = islandOf(plan.links[i]);
         ++plan.constraintsOf[island];
-        plan.jointed[island] |= i < plan.jointLinks ? 1 : 0;
+        plan.jointsOf[island] += i < plan.jointLinks ? 1u : 0u;
     }
     if (demand.substeps != 0) return;
     effortOf.assign(count, 0);
@@ -61,7 +63,8 @@ void Builder::findAllIslands() {
         const std::uint8_t effort = demand.efforts[body];
         if (plan.islandOf[body] == body) island = effort;
         const bool gentle = gentleAt(island) && gentleAt(effort);
-        island = EffortPlan{std::max(levelOf(island), levelOf(effort)), 0, gentle}.packed();
+        const bool trees = treesAt(island) || treesAt(effort);
+        island = EffortPlan{std::max(levelOf(island), levelOf(effort)), 0, gentle, trees}.packed();
         std::uint8_t& ramp = rampOfIsland[plan.islandOf[body]];
         ramp = std::max(ramp, demand.ramps[body]);
     }
@@ -76,7 +79,7 @@ void Builder::packBatches() {
     plan.islands = 0;
     // By ramp, rest and level: the batch that small islands still go to.
     constexpr std::uint32_t levels = highestEffort + 1;
-    std::array<std::uint32_t, (highestRamp + 1) * 2 * levels> openOf{};
+    std::array<std::uint32_t, (highestRamp + 1) * 4 * levels> openOf{};
     openOf.fill(none);
     for (const std::uint32_t body : plan.awake) {
         if (plan.islandOf[body] != body) continue;
@@ -92,7 +95,10 @@ void Builder::packBatches() {
             planned ? std::min(levelOf(effortOf[body]), affordableEffort(size)) : std::uint8_t{0};
         const bool gentle = planned && gentleAt(effortOf[body]);
         const std::uint8_t ramp = planned ? rampOfIsland[body] : std::uint8_t{0};
-        std::uint32_t& open = openOf[(ramp * 2u + (gentle ? 1u : 0u)) * levels + effort];
+        const bool trees =
+            demand.trees || (planned && mayHaveTrees(plan, body) && treesAt(effortOf[body]));
+        const std::uint32_t kind = (gentle ? 1u : 0u) + (trees ? 2u : 0u);
+        std::uint32_t& open = openOf[(ramp * 4u + kind) * levels + effort];
         if (giant || open == none || plan.batches[open].constraints + size > limits.batchSize) {
             const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
             Batch batch;
@@ -101,7 +107,7 @@ void Builder::packBatches() {
             batch.ramp = ramp;
             batch.gentle = gentle;
             batch.substeps = planned ? substepsOf(effort) : demand.substeps;
-            batch.trees = demand.trees;
+            batch.trees = trees;
             plan.batches.push_back(batch);
             batchOf[body] = fresh;
             if (!giant) open = fresh;

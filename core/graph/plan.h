@@ -12,6 +12,7 @@
 #include "core/graph/hubs.h"
 #include "core/graph/incidence.h"
 #include "core/graph/islands.h"
+#include "core/solver/effort.h"
 #include "core/state/records.h"
 
 namespace huestep {
@@ -76,7 +77,8 @@ struct Plan {
     std::vector<std::uint32_t> freeBodies;         ///< awake bodies without a constraint
     std::vector<std::uint32_t> islandOf;           ///< body → lowest body of its island
     std::vector<std::uint32_t> constraintsOf;      ///< lowest body of an island → constraints
-    std::vector<std::uint8_t> jointed;  ///< lowest body of an island → whether it has a joint
+    std::vector<std::uint32_t> jointsOf;           ///< likewise → joints
+    std::vector<std::uint32_t> bodiesOf;           ///< likewise → bodies
     std::vector<std::uint8_t> colourOfLink;
     Incidence incidence;  ///< where `PlanDemand` asks for it
     std::uint32_t islands = 0;
@@ -85,6 +87,13 @@ struct Plan {
     std::uint32_t sharedFrom = 0;  ///< see `PlanLimits`
     std::uint32_t inBuckets = 0;   ///< contacts of hubs
 };
+
+/// Whether an island's joints may be solved with their trees: they are few enough for one thread,
+/// and hardly any of them closes a loop.
+inline bool mayHaveTrees(const Plan& plan, std::uint32_t island) {
+    return plan.jointsOf[island] > 0 && plan.constraintsOf[island] <= mostWithTrees &&
+           plan.jointsOf[island] <= plan.bodiesOf[island] + 4;
+}
 
 /// What may differ from the standard in tests only. No result depends on any but `hubDegree`.
 struct PlanLimits {

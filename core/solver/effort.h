@@ -58,15 +58,19 @@ struct EffortPlan {
     std::uint8_t level = standardEffort;
     std::int8_t calm = 0;  ///< steps; −1, −2: strained; below: a ramp, see `rampOf`
     bool gentle = false;   ///< contacts may be stiffer: nothing hits anything
+    bool trees = false;    ///< joint trees are solved at once (joint_trees.h)
 
-    // Level and rest as a body's state keeps them.
-    static constexpr std::uint8_t gentleBit = 0x80;
+    // As a body's state keeps them, `calm` apart.
+    static constexpr std::uint8_t gentleBit = 0x80, treesBit = 0x40;
     [[nodiscard]] constexpr std::uint8_t packed() const {
-        return static_cast<std::uint8_t>(level | (gentle ? gentleBit : 0));
+        return static_cast<std::uint8_t>(level | (gentle ? gentleBit : 0) | (trees ? treesBit : 0));
     }
 };
 constexpr std::uint8_t levelOf(std::uint8_t effort) {
-    return effort & (EffortPlan::gentleBit - 1);
+    return effort & (EffortPlan::treesBit - 1);
+}
+constexpr bool treesAt(std::uint8_t effort) {
+    return (effort & EffortPlan::treesBit) != 0;
 }
 constexpr bool gentleAt(std::uint8_t effort) {
     return (effort & EffortPlan::gentleBit) != 0;
@@ -78,10 +82,34 @@ struct EffortRange {
     std::uint8_t most = highestEffort;    ///< `affordableEffort`; what needs more stays there
     bool gentle = false;                  ///< whether nothing in it is faster than 1 m/s
     bool jointed = false;                 ///< whether it has joints
+    bool mayHaveTrees = false;            ///< that may be solved at once
 };
 
-/// From the level that this step took, how long it has been calm, and the strain it ended with.
-EffortPlan planEffort(EffortPlan now, float strain, const EffortRange& range);
+/// How much an island's rows gave way, of what they may.
+struct IslandStrain {
+    float rows = 0;   ///< of those that more substeps help
+    float trees = 0;  ///< of joints that may be solved at once, were they not
+};
+
+/// From what this step took, how long it has been calm, and the strain it ended with.
+EffortPlan planEffort(EffortPlan now, IslandStrain strain, const EffortRange& range);
+
+/// Whether joints that are solved at once could be left to sweeps again, with a margin.
+bool isCalmTree(float strain);
+
+/// What hangs together by joints alone.
+struct JointedBodies {
+    std::uint32_t joints = 0;
+    float ratio = 1.0f;  ///< of the masses that a joint holds together, the most unlike
+};
+/// The heavier mass over the lighter, of inverse masses (1/kg); 1 where one does not move.
+float massRatio(float inverseMassA, float inverseMassB);
+/// Whether its joints are solved at once from the start, before their rows give way: masses are
+/// very unlike, or loads add up over a long row of them.
+bool wantsTree(const JointedBodies& bodies);
+
+/// Up to how many constraints an island's joint trees may be solved at once: one thread does it.
+inline constexpr std::uint32_t mostWithTrees = 1024;
 
 /// What the strain of a contact that begins will be, which no impulse tells yet: the heavier body's
 /// weight and its momentum over a step, on a row of the lighter one. Of bodies of like mass, 0:

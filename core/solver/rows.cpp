@@ -341,7 +341,7 @@ void Rows::settleContacts(const Plan& plan, const SolverWorld& world, const Cont
 
 void Rows::storeJoints(const SolverWorld& world, Range range) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        if (world.planned) joints[i].strain = joints[i].direct ? 0.0f : strainOf(joints[i]);
+        if (world.planned) joints[i].strain = strainOf(joints[i]);
         world.jointImpulses[joints[i].joint] = storedImpulses(joints[i]);
     }
 }

@@ -196,6 +196,31 @@ void World::Data::completeShapes() {
     }
     s.first[bodies] = shape;
     sortIntoKinds(s.proxies);
+    findTrees();
+}
+
+/// Whose joints want to be solved at once: by what hangs together by joints alone.
+void World::Data::findTrees() {
+    Shapes& s = accelerators.shapes;
+    const auto bodies = static_cast<std::uint32_t>(state.bodies.size());
+    s.wantsTree.assign(s.jointBodies.empty() ? 0 : bodies, 0);
+    if (s.jointBodies.empty()) return;
+    std::vector<std::uint8_t> dynamic(bodies);
+    for (std::uint32_t i = 0; i < bodies; ++i) dynamic[i] = state.bodies[i].dynamic();
+    std::vector<Link> links;
+    for (const ConstraintPlaces& j : s.jointBodies) links.push_back({j.a, j.b, 0});
+    UnionFind sets;
+    findIslands(links, dynamic, sets);
+    std::vector<JointedBodies> of(bodies);
+    for (const ConstraintPlaces& j : s.jointBodies) {
+        JointedBodies& joined = of[sets.find(dynamic[j.b] ? j.b : j.a)];
+        ++joined.joints;
+        const float a = state.bodies[j.a].inverseMass, b = state.bodies[j.b].inverseMass;
+        joined.ratio = maxOf(joined.ratio, massRatio(a, b));
+    }
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        s.wantsTree[i] = dynamic[i] && wantsTree(of[sets.find(i)]) ? 1 : 0;
+    }
 }
 
 }  // namespace huestep

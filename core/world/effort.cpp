@@ -20,8 +20,14 @@ constexpr float unrestSpeed = 0.5f;
 // Slower than this nothing hits anything: its contacts may be stiff.
 constexpr float gentleSpeed = 1.0f;
 
-Strain larger(Strain a, Strain b) {
-    return b.most > a.most ? b : a;
+RowStrain larger(const RowStrain& a, const RowStrain& b) {
+    return {maxOf(a.contacts, b.contacts), maxOf(a.swept, b.swept), maxOf(a.direct, b.direct)};
+}
+
+/// By what helps: substeps, or trees.
+IslandStrain byCure(const RowStrain& strain, bool trees, bool mayHaveTrees) {
+    if (!trees && mayHaveTrees) return {strain.contacts, strain.swept};
+    return {maxOf(strain.contacts, strain.swept), strain.direct};
 }
 
 float mostOf(const float (&lanes)[blockLanes], float most) {
@@ -52,12 +58,13 @@ class BatchEffort {
     void overBodies(F&& f) const;
     template <class F>
     void overRows(F&& f) const;
-    [[nodiscard]] Strain mostStrain() const;
+    [[nodiscard]] RowStrain mostStrain() const;
+    [[nodiscard]] RowStrain strainOfJoint(const JointRow& row) const;
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
     [[nodiscard]] float speedOf(std::uint32_t body) const;
     [[nodiscard]] EffortRange rangeOf(std::uint32_t island, float fastest) const;
-    [[nodiscard]] bool stays(Strain strain);
-    void gather(std::optional<Strain> strain);
+    [[nodiscard]] bool stays(const RowStrain& strain);
+    void gather(const std::optional<RowStrain>& strain);
     void rescale() const;
 
     World::Data& m_world;
@@ -83,24 +90,31 @@ void BatchEffort::overRows(F&& f) const {
         const ContactBlock& rows = m_rows.blocks[block];
         for (std::size_t i = 0; i < blockLanes; ++i) {
             if (rows.strain[i] == 0.0f) continue;
-            f(rows.bodyA[i], rows.bodyB[i], Strain{m_contactFloor * rows.strain[i], false});
+            f(rows.bodyA[i], rows.bodyB[i], RowStrain{.contacts = m_contactFloor * rows.strain[i]});
         }
     }
     for (std::uint32_t at = m_batch.firstRevoluteBlock; at < m_batch.endRevoluteBlock; ++at) {
         const RevoluteBlock& rows = m_rows.revolutes[at];
         for (std::size_t i = 0; i < blockLanes; ++i) {
             if (rows.strain[i] == 0.0f) continue;
-            f(rows.bodyA[i], rows.bodyB[i], Strain{m_jointFloor * std::sqrt(rows.strain[i]), true});
+            f(rows.bodyA[i], rows.bodyB[i],
+              RowStrain{.swept = m_jointFloor * std::sqrt(rows.strain[i])});
         }
     }
     for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
         const JointRow& row = m_rows.joints[i];
-        f(row.bodyA, row.bodyB, Strain{m_jointFloor * row.strain, true});
+        f(row.bodyA, row.bodyB, strainOfJoint(row));
     }
 }
 
-Strain BatchEffort::mostStrain() const {
-    float contacts = 0.0f, revolutes = 0.0f, joints = 0.0f;
+RowStrain BatchEffort::strainOfJoint(const JointRow& row) const {
+    const float strain = m_jointFloor * row.strain;
+    return row.direct ? RowStrain{.direct = strain} : RowStrain{.swept = strain};
+}
+
+RowStrain BatchEffort::mostStrain() const {
+    RowStrain most;
+    float contacts = 0.0f, revolutes = 0.0f;
     for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
         contacts = mostOf(m_rows.blocks[block].strain, contacts);
     }
@@ -108,10 +122,10 @@ Strain BatchEffort::mostStrain() const {
         revolutes = mostOf(m_rows.revolutes[at].strain, revolutes);
     }
     for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
-        joints = maxOf(joints, m_rows.joints[i].strain);
+        most = larger(most, strainOfJoint(m_rows.joints[i]));
     }
-    return larger({m_contactFloor * contacts, false},
-                  {m_jointFloor * maxOf(std::sqrt(revolutes), joints), true});
+    return larger(most, {.contacts = m_contactFloor * contacts,
+                         .swept = m_jointFloor * std::sqrt(revolutes)});
 }
 
 IslandEffort& BatchEffort::islandOf(BodyPlace a, BodyPlace b) const {
@@ -154,11 +168,11 @@ float BatchEffort::speedOf(std::uint32_t body) const {
 }
 
 /// What each island brings into the decision; `strain` where it is known to be that of all.
-void BatchEffort::gather(std::optional<Strain> strain) {
+void BatchEffort::gather(const std::optional<RowStrain>& strain) {
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island = {strain.value_or(Strain{}), calmSteps, 0.0f, {}};
+            island = {strain.value_or(RowStrain{}), calmSteps, 0.0f, {}};
         }
         const BodyMotion& motion = m_world.state.motions[body];
         // A body that was lifted to the batch's level by others has not been calm there.
@@ -168,21 +182,22 @@ void BatchEffort::gather(std::optional<Strain> strain) {
         island.fastest = maxOf(island.fastest, speedOf(body));
     });
     if (strain) return;
-    overRows([&](BodyPlace a, BodyPlace b, Strain ofRow) {
+    overRows([&](BodyPlace a, BodyPlace b, const RowStrain& ofRow) {
         IslandEffort& island = islandOf(a, b);
         island.strain = larger(island.strain, ofRow);
     });
 }
 
 EffortRange BatchEffort::rangeOf(std::uint32_t island, float fastest) const {
-    const bool jointed = m_plan.jointed[island] != 0;
+    const bool jointed = m_plan.jointsOf[island] > 0;
     const float still = m_batch.effort == restingEffort ? unrestSpeed : restSpeed;
     return {!jointed && fastest < still ? restingEffort : standardEffort,
-            affordableEffort(m_plan.constraintsOf[island]), fastest < gentleSpeed, jointed};
+            affordableEffort(m_plan.constraintsOf[island]), fastest < gentleSpeed, jointed,
+            mayHaveTrees(m_plan, island)};
 }
 
 /// Whether a giant that is strained so stays as it is, so that nothing is to be written.
-bool BatchEffort::stays(Strain strain) {
+bool BatchEffort::stays(const RowStrain& strain) {
     if (!m_batch.giant || !m_batch.still) return false;
     float fastest = 0.0f;
     std::uint32_t island = none;
@@ -193,27 +208,31 @@ bool BatchEffort::stays(Strain strain) {
         island = m_plan.islandOf[body];
         fastest = maxOf(fastest, speedOf(body));
     }
-    const EffortPlan now{m_batch.effort, 0, m_batch.gentle};
-    const EffortPlan next = planEffort(now, strain.most, rangeOf(island, fastest));
+    const EffortPlan now{m_batch.effort, 0, m_batch.gentle, m_batch.trees};
+    const EffortRange range = rangeOf(island, fastest);
+    const EffortPlan next = planEffort(now, byCure(strain, now.trees, range.mayHaveTrees), range);
     m_world.islandEfforts[island].strain = strain;
     return next.packed() == now.packed() && next.calm == 0 && m_batch.ramp == 0;
 }
 
 bool BatchEffort::decide() {
-    const Strain most = mostStrain();
+    const RowStrain most = mostStrain();
     if (stays(most)) return false;
     // Where every island is as calm as the one that is strained most, none needs a closer look.
     const EffortRange widest{restingEffort, highestEffort, m_batch.gentle};
-    const bool alike =
-        m_batch.giant || (m_batch.ramp == 0 && isCalm(m_batch.effort, most.most, widest));
+    const float rows = maxOf(most.contacts, maxOf(most.swept, most.direct));
+    const bool alike = m_batch.giant || (m_batch.ramp == 0 &&
+                                         isCalm(m_batch.effort, rows, widest) && isCalmTree(rows));
     gather(alike ? std::optional(most) : std::nullopt);
-    const EffortPlan now{m_batch.effort, 0, m_batch.gentle};
+    const EffortPlan now{m_batch.effort, 0, m_batch.gentle, m_batch.trees};
     bool changes = false, scales = false, still = true;
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island.next = planEffort({now.level, island.calm, now.gentle}, island.strain.most,
-                                     rangeOf(body, island.fastest));
+            const EffortRange range = rangeOf(body, island.fastest);
+            const bool trees = now.trees && m_plan.jointsOf[body] > 0;
+            const IslandStrain strain = byCure(island.strain, trees, range.mayHaveTrees);
+            island.next = planEffort({now.level, island.calm, now.gentle, trees}, strain, range);
             scales |= island.next.level != now.level;
             changes |= island.next.packed() != now.packed();
             still = still && island.next.packed() == now.packed() && island.next.calm == 0;
@@ -255,9 +274,13 @@ std::vector<std::uint8_t> World::Data::effortsNow() const {
         const std::uint8_t needed = effortOfBeginning(*this, contact);
         for (const std::uint32_t body : {contact.bodyA, contact.bodyB}) {
             const EffortPlan raised{std::max(levelOf(efforts[body]), needed), 0,
-                                    gentleAt(efforts[body])};
+                                    gentleAt(efforts[body]), treesAt(efforts[body])};
             efforts[body] = raised.packed();
         }
+    }
+    const std::vector<std::uint8_t>& trees = accelerators.shapes.wantsTree;
+    for (std::size_t body = 0; body < trees.size(); ++body) {
+        if (trees[body] != 0) efforts[body] |= EffortPlan::treesBit;
     }
     return efforts;
 }
@@ -286,16 +309,17 @@ void World::Data::reportTooStiff() {
     const Plan& plan = accelerators.plan;
     for (const std::uint32_t body : plan.awake) {
         if (plan.islandOf[body] != body || plan.constraintsOf[body] == 0) continue;
-        const Strain& strain = islandEfforts[body].strain;
+        const RowStrain& strain = islandEfforts[body].strain;
+        const float most = maxOf(strain.contacts, strain.swept);
         const std::uint8_t level = levelOf(state.motions[body].effort);
-        if (!(strain.most > 1.0f) || level < affordableEffort(plan.constraintsOf[body])) continue;
+        if (!(most > 1.0f) || level < affordableEffort(plan.constraintsOf[body])) continue;
         ++report.tooStiff.islands;
-        const std::uint32_t needed = substepsOf(neededEffort(level, strain.most));
+        const std::uint32_t needed = substepsOf(neededEffort(level, most));
         if (needed <= report.tooStiff.neededSubsteps) continue;
         report.tooStiff.body = state.bodies[body].id;
         report.tooStiff.substeps = substepsOf(level);
         report.tooStiff.neededSubsteps = needed;
-        report.tooStiff.joint = strain.joint;
+        report.tooStiff.joint = strain.swept > strain.contacts;
     }
 }
 

@@ -68,8 +68,10 @@ StepLayout World::stepLayout() const {
             view.substeps = batch.substeps;
             view.gentle = batch.gentle;
             if (m_data->state.info().planned() && body < m_data->islandEfforts.size()) {
-                view.strain = m_data->islandEfforts[body].strain.most;
-                view.strainedJoint = m_data->islandEfforts[body].strain.joint;
+                const RowStrain& strain = m_data->islandEfforts[body].strain;
+                view.trees = batch.trees && plan.jointsOf[body] > 0;
+                view.strain = maxOf(strain.contacts, maxOf(strain.swept, strain.direct));
+                view.strainedJoint = maxOf(strain.swept, strain.direct) > strain.contacts;
             }
         }
         if (!batch.giant) continue;

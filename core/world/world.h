@@ -108,6 +108,7 @@ struct IslandView {
     std::uint32_t substeps = 0;
     // Where substeps are planned:
     bool gentle = false;  ///< nothing in it is faster than 1 m/s: its contacts are stiffer
+    bool trees = false;   ///< its joint trees are solved at once
     /// Of what the scene's need allows, how much its worst row gives way at rest; an upper bound
     /// where it is far below 1.
     float strain = 0.0f;

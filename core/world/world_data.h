@@ -35,6 +35,7 @@ struct Shapes {
     std::vector<ShapePair> forbidden;  // body places that a joint keeps from touching, sorted
     std::vector<ConstraintPlaces> jointBodies;  // by joint
     std::vector<std::uint32_t> kinematic;       // places of kinematic bodies
+    std::vector<std::uint8_t> wantsTree;        // by body: its joints are solved at once (effort.h)
 };
 
 /// A pair of shapes that are near each other.
@@ -108,15 +109,16 @@ struct Carried {
     void become(const Carried& other, bool related);  // carried.cpp
 };
 
-/// How much an island's most strained row gives way, in what it may.
-struct Strain {
-    float most = 0;
-    bool joint = false;  // of a joint, not of a contact
+/// How much rows give way, of what they may: the most of each kind.
+struct RowStrain {
+    float contacts = 0;
+    float swept = 0;   // joints that sweeps solve
+    float direct = 0;  // joints that are solved with their tree, were they not
 };
 
 /// What the last step said of an island; of its lowest body.
 struct IslandEffort {
-    Strain strain;
+    RowStrain strain;
     std::int8_t calm = 0;  // the lowest of its bodies
     float fastest = 0;     // m/s, of any of its points
     EffortPlan next;
@@ -188,6 +190,7 @@ struct World::Data : Carried {
     void endContactsOfRemoved();
     void closeGaps();
     void completeShapes();
+    void findTrees();
 
     // carry_over.cpp
     void followDefinitions(Executor* executor);

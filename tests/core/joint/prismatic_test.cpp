@@ -111,6 +111,7 @@ TEST(Prismatic, ASideLoadAndItsMomentAreHeldUpToTheFloorOfSoftRows) {
     const BodyDef bar = bodyAt(BodyType::Dynamic, {0.5f, 0.0f}, ShapeDef::box(0.5f, 0.125f));
     Scene scene = sceneOf({BodyDef{}, bar}, {joint});
     scene.sleep = false;
+    scene.substeps = 4;
     World world = worldOf(scene);
     run(world, 600);
     const double h = 1.0 / 240.0;

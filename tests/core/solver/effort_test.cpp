@@ -16,7 +16,7 @@ EffortPlan after(EffortPlan now, float strain, int steps, const EffortRange& ran
     for (int i = 0; i < steps; ++i) {
         const float quarter = std::pow(0.25f, static_cast<float>(now.level - start));
         const float share = rampShare(rampOf(now.calm));
-        now = planEffort(now, strain * quarter / (share * share), range);
+        now = planEffort(now, {strain * quarter / (share * share)}, range);
     }
     return now;
 }
@@ -36,14 +36,14 @@ TEST(Effort, ForgetsStrainThatIsOverBeforeTheThirdStep) {
     const EffortRange range{};
     EffortPlan plan = after({2, 0}, 50.0f, 2, range);
     EXPECT_LT(plan.calm, 0);
-    plan = planEffort(plan, 0.5f, range);
+    plan = planEffort(plan, {0.5f}, range);
     EXPECT_EQ(plan.calm, 0);
     EXPECT_EQ(after(plan, 50.0f, 2, range).level, 2);
 }
 
 TEST(Effort, StaysWithinTheBudget) {
     EXPECT_EQ(after({2, 0}, 50.0f, 10, {.most = 3}).level, 3);
-    EXPECT_EQ(planEffort({5, 0}, 0.9f, {.most = 3}).level, 3);
+    EXPECT_EQ(planEffort({5, 0}, {0.9f}, {.most = 3}).level, 3);
     // 16,384 constraint substeps, and four substeps for everyone.
     EXPECT_EQ(affordableEffort(512), 5);
     EXPECT_EQ(affordableEffort(513), 4);
@@ -57,13 +57,13 @@ TEST(Effort, FallsOneLevelAfterThirtyCalmStepsAndNotBelowItsRange) {
     EffortPlan plan{4, 0};
     plan = after(plan, 0.01f, 29, range);
     EXPECT_EQ(plan.level, 4);
-    plan = planEffort(plan, 0.01f, range);
+    plan = planEffort(plan, {0.01f}, range);
     EXPECT_EQ(plan.level, 3);
     EXPECT_EQ(plan.calm, 0);
     EXPECT_EQ(after(plan, 1.0e-6f, 300, range).level, standardEffort);
     EXPECT_EQ(after(plan, 1.0e-6f, 300, {.least = restingEffort, .gentle = true}).level,
               restingEffort);
-    EXPECT_EQ(planEffort({restingEffort, 0}, 0.0f, range).level, standardEffort)
+    EXPECT_EQ(planEffort({restingEffort, 0}, {}, range).level, standardEffort)
         << "who no longer rests goes up at once";
 }
 
@@ -81,12 +81,37 @@ TEST(Effort, OfJointsComesNearerToItsFrequencyByASixteenthOfAnOctaveAStep) {
     EXPECT_FLOAT_EQ(rampShare(32), 0.25f) << "it starts with the frequency that it had";
     for (int left = 31; left >= 0; --left) {
         const float share = rampShare(rampOf(plan.calm));
-        plan = planEffort(plan, 10.0f / 16.0f / (share * share), range);
+        plan = planEffort(plan, {10.0f / 16.0f / (share * share)}, range);
         EXPECT_EQ(rampOf(plan.calm), left);
         EXPECT_NEAR(rampShare(rampOf(plan.calm)), std::exp2(-left / 16.0), 1.0e-6);
     }
     EXPECT_EQ(plan.level, 4);
     EXPECT_EQ(plan.calm, 0);
+}
+
+TEST(Effort, OfStrainedJointsThatMayBeSolvedAtOnceIsTheirTreeAndNoMoreSubsteps) {
+    const EffortRange range{.jointed = true, .mayHaveTrees = true};
+    EffortPlan plan{2, 0};
+    for (int step = 0; step < 3; ++step) plan = planEffort(plan, {0.1f, 50.0f}, range);
+    EXPECT_TRUE(plan.trees);
+    EXPECT_EQ(plan.level, 2);
+    EXPECT_EQ(plan.calm, 0);
+    for (int step = 0; step < 100; ++step) plan = planEffort(plan, {0.1f, 0.5f}, range);
+    EXPECT_TRUE(plan.trees) << "half of what they may: sweeps would hardly do";
+    for (int step = 0; step < 30; ++step) plan = planEffort(plan, {0.1f, 0.2f}, range);
+    EXPECT_FALSE(plan.trees);
+    EXPECT_FALSE(planEffort({2, 0, false, true}, {}, {.jointed = true}).trees)
+        << "of an island that has become too large";
+}
+
+TEST(Effort, OfUnlikeMassesAndLongRowsIsTheirTreeFromTheStart) {
+    EXPECT_FLOAT_EQ(massRatio(0.001f, 1.0f), 1000.0f);
+    EXPECT_FLOAT_EQ(massRatio(1.0f, 0.0f), 1.0f) << "a body that does not move has no part in it";
+    EXPECT_TRUE(wantsTree({.joints = 11, .ratio = 10.0f}));
+    EXPECT_TRUE(wantsTree({.joints = 40}));
+    EXPECT_FALSE(wantsTree({.joints = 10, .ratio = 9.0f})) << "a ragdoll";
+    EXPECT_FALSE(wantsTree({.joints = 1})) << "a pendulum";
+    EXPECT_FALSE(wantsTree({}));
 }
 
 TEST(Effort, KnowsTheFloorOfASoftRow) {
