@@ -35,6 +35,7 @@ Scene fullScene() {
     scene.stepSeconds = 0.01f;
     scene.substeps = 7;
     scene.method = Method::Sequential;
+    scene.need = {0.002f, 0.003f};
     scene.sleep = false;
     BodyDef ground;
     ground.id = 3;
@@ -296,7 +297,7 @@ TEST(SceneFile, BadDocumentsAreRefusedWithTheirPath) {
          "bodies[0].position.x: stands here twice"},
         {R"({"version": 1, "colour": "red"})",
          "colour: no such field; there are version, name, gravity, stepSeconds, substeps, sleep, "
-         "bodies, joints, players, limits, counters, method"},
+         "bodies, joints, players, limits, counters, method, need"},
         {withBody(R"("position": {"x": 1, "y": 2, "z": 3})"),
          "bodies[0].position.z: no such field; there are x, y"},
         {withBody(R"("position": {"x": 1})"), "bodies[0].position.y: is missing"},

@@ -24,7 +24,7 @@ TEST(Stability, PrintsOneDocumentWithARowAScene) {
             EXPECT_TRUE(row.contains(key)) << key << row;
         EXPECT_EQ(row["pass"], true) << row;
         EXPECT_TRUE(row["value"].is_number());
-        seen.insert({row["row"], row["method"]});
+        seen.emplace(row["row"].get<int>(), row["method"].get<std::string>());
         const std::string hashes = row["hashes"];
         EXPECT_EQ(hashes.find("equal on 2 threads") != std::string::npos,
                   row["method"] == "soft-step")
