@@ -7,6 +7,7 @@
 #include "tools/chart/csv.h"
 #include "tools/chart/document.h"
 #include "tools/chart/page.h"
+#include "tools/chart/stability.h"
 #include "tools/clock.h"
 #include "tools/command.h"
 #include "tools/files.h"
@@ -50,6 +51,12 @@ Result<bool> measureWork(Findings& f) {
     return true;
 }
 
+/// Unless a file has said it.
+Result<bool> stabilityOf(Findings& f) {
+    if (!f.stability.empty()) return true;
+    return chart::measureStability(f.extent, f.stability);
+}
+
 /// The parts, each of which leaves what it found behind. False: interrupted.
 Result<bool> measureAll(Findings& f) {
     struct Part {
@@ -61,7 +68,8 @@ Result<bool> measureAll(Findings& f) {
         {"sizes", [&f] { return chart::measureSizes(f.extent, f.sizes); }},
         {"scenes", [&f] { return chart::measureScenes(f.extent, f.scenes); }},
         {"prices of sharing", [&f] { return chart::measurePrices(f.extent, f.prices); }},
-        {"effort by need", [&f] { return chart::measureEffort(f.extent, f.effort); }}};
+        {"effort by need", [&f] { return chart::measureEffort(f.extent, f.effort); }},
+        {"stability", [&f] { return stabilityOf(f); }}};
     std::size_t finished = 0;
     for (const Part& part : parts) {
         const Result<bool> done = part.measure();
@@ -121,14 +129,14 @@ Result<Json> readStability(const std::string& path) {
 }
 
 Answer makeCharts(const Options& options) {
-    const std::filesystem::path folder = options.folder;
-    if (const Status open = openFolder(folder); !open) return open.error();
     Findings findings;
     if (!options.stability.empty()) {
         const Result<Json> rows = readStability(options.stability);
         if (!rows) return rows.error();
         findings.stability = *rows;
     }
+    const std::filesystem::path folder = options.folder;
+    if (const Status open = openFolder(folder); !open) return open.error();
     findings.extent = options.extent();
     const std::uint64_t begin = nanoseconds();
     const Result<bool> done = measureAll(findings);

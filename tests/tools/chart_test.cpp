@@ -81,6 +81,20 @@ void listsEveryPointThatFailedWithAReason(const Charts& charts) {
               charts.document.at("methods").size());
 }
 
+void putsEveryMethodToTheStabilitySuite(const Charts& charts) {
+    for (const Json& method : charts.document.at("methods")) {
+        int rows = 0;
+        for (const Json& row : charts.document.at("stability")) {
+            if (row.at("method") != method.at("name")) continue;
+            ++rows;
+            EXPECT_EQ(row.at("pass") == false, row.at("why") != "") << row;
+        }
+        EXPECT_GT(rows, 0) << method;
+    }
+    EXPECT_EQ(csvRows(charts.file("stability.csv")).size(),
+              charts.document.at("stability").size() + 1);
+}
+
 void itsFrontHoldsWhatNoPointOfTheCaseBeats(const Charts& charts) {
     for (const Json& p : charts.document.at("work_precision")) {
         bool beaten = p.at("error").is_null();
@@ -123,9 +137,29 @@ TEST(Chart, LeavesAPageTablesAndPicturesWithAHashForEveryTime) {
     itsHashesAreThoseOfTheSameRuns(charts);
     itsTablesReadBackAsTheRowsOfTheDocument(charts);
     listsEveryPointThatFailedWithAReason(charts);
+    putsEveryMethodToTheStabilitySuite(charts);
     itsFrontHoldsWhatNoPointOfTheCaseBeats(charts);
     writesOnePageThatAsksNobodyForAnything(charts);
     writesAPictureForEveryCase(charts);
+}
+
+TEST(Chart, ShowsTheVerdictsOfAFileInsteadOfRunningTheSuite) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "verdicts.json";
+    const Json rows = Json::parse(R"([{"row": 1, "name": "tall stack", "scene": "stack:n=10",
+        "method": "soft-step", "pass": false, "judged": true, "value": null, "limit": 0.5,
+        "unit": "m", "frontier": 0, "why": "it fell", "what": "farthest"}])");
+    std::ofstream(path) << Json{{"rows", rows}};
+    const Json document =
+        documentOf({"chart", "--out", folder / "charts", "--smoke", "--stability", path});
+    EXPECT_EQ(document.at("stability"), rows);
+    EXPECT_NE(textOf(folder / "charts/stability.svg").find("tall stack"), std::string::npos);
+
+    std::ofstream(path) << "{}";
+    const Ended ended =
+        huestep({"chart", "--out", folder / "charts", "--smoke", "--stability", path});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_NE(ended.err.find(path + ": not what"), std::string::npos) << ended.err;
 }
 
 }  // namespace

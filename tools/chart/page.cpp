@@ -61,12 +61,15 @@ std::string pageOf(const Json& document) {
 Result<std::vector<Picture>> picturesOf(const Json& document) {
     const std::unique_ptr<duk_context, HeapOff> heap(duk_create_heap_default());
     if (!heap) return Error{"a chart could not be drawn: there is no memory"};
+    // Read as JSON, for a script may not name as many constants as there are figures.
+    const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    duk_push_lstring(heap.get(), text.data(), text.size());
+    duk_json_decode(heap.get(), -1);
+    duk_put_global_string(heap.get(), "document_");
     // The library waits for its next frame with timers, which there are none of here: each picture
     // is drawn at once.
-    const std::string setting =
-        "var setTimeout = function () {}, document_ = " + scriptText(document) + "; null";
-    for (const std::string_view script :
-         {std::string_view(setting), assets::library, assets::charts})
+    for (const std::string_view script : {std::string_view("var setTimeout = function () {}; null"),
+                                          assets::library, assets::charts})
         if (const Result<std::string> done = evaluate(heap.get(), script); !done)
             return done.error();
     const Result<std::string> drawn =
