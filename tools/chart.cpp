@@ -33,9 +33,10 @@ struct Options {
     }
 };
 
-/// Says what is done now, and how far the whole is.
-void say(const char* part, std::size_t done, std::size_t all) {
-    std::fprintf(stderr, "%s: %zu of %zu\n", part, done, all);
+/// Says what is done, how far the whole is, and how long this took.
+void say(const char* part, std::size_t done, std::size_t all, std::uint64_t begin) {
+    const double seconds = static_cast<double>(nanoseconds() - begin) * 1e-9;
+    std::fprintf(stderr, "%s: part %zu of %zu, %.0f s\n", part, done, all, seconds);
 }
 
 Result<bool> measureWork(Findings& f) {
@@ -72,9 +73,10 @@ Result<bool> measureAll(Findings& f) {
         {"stability", [&f] { return stabilityOf(f); }}};
     std::size_t finished = 0;
     for (const Part& part : parts) {
+        const std::uint64_t begin = nanoseconds();
         const Result<bool> done = part.measure();
         if (!done || !*done) return done;
-        say(part.name, ++finished, std::size(parts));
+        say(part.name, ++finished, std::size(parts), begin);
     }
     return true;
 }

@@ -47,8 +47,8 @@ std::vector<Sample> benchmarksOf(Extent extent) {
                 {"spinner:bodies=300", 120},
                 {"compounds:columns=12,rows=20", 120}};
     return {{"small", 120},     {"pyramid", 60},   {"many_pyramids", 60}, {"joint_grid", 60},
-            {"tumbler", 300},   {"spinner", 200},  {"washer", 200},       {"smash", 120},
-            {"compounds", 200}, {"junkyard", 200}, {"rain", 400}};
+            {"tumbler", 200},   {"spinner", 120},  {"washer", 120},       {"smash", 120},
+            {"compounds", 120}, {"junkyard", 120}, {"rain", 330}};
 }
 
 /// More ticks of small worlds, whose clock is coarse.

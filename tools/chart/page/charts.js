@@ -564,6 +564,13 @@ var huestepCharts = (function () {
         option: option(look, 'Share of two threads’ time in which they wait for each other', [], across(look, names, 'share of the two threads’ time', percent, waits)) }];
   }
 
+  /** Whether a row of prices ended otherwise than in another run, or than on one thread. @param {Row} doc @param {Row} row @returns {boolean} */
+  function unsteady(doc, row) {
+    return row.different_hashes > 1 || doc.prices.some(function (/** @type {Row} */ other) {
+      return other.scene === row.scene && other.method === row.method && other.threads === 1 && other.hash !== row.hash;
+    });
+  }
+
   /** @param {Row} doc @param {Look} look @returns {Chart[]} */
   function prices(doc, look) {
     var ink = inks(look);
@@ -586,7 +593,7 @@ var huestepCharts = (function () {
             return {
               value: [Math.max(errorOf(row), least), row.wall_us_min], symbolSize: style.size + 4,
               itemStyle: row.threads === 1 ? { color: ink.paper, borderColor: style.color, borderWidth: 2 } : { color: style.color },
-              label: { show: true, position: 'right', fontSize: 10, color: style.color, formatter: String(row.threads) + (row.different_hashes > 1 ? ' ≠' : '') },
+              label: { show: true, position: 'right', fontSize: 10, color: style.color, formatter: String(row.threads) + (unsteady(doc, row) ? ' ≠' : '') },
               box: box(row, [(joints ? 'joint error ' : 'penetration ') + short(errorOf(row)) + ' m at the end']),
             };
           }),
@@ -706,6 +713,8 @@ var huestepCharts = (function () {
       if (!verdict.judged) return;
       cell.judged = true;
       if (!verdict.pass) cell.pass = false;
+      // Of the light pendulum each n is a scene of its own.
+      if (verdict.row === 17) return;
       // A row's frontier is that of its hardest scene; none of one is none of all.
       if (verdict.frontier === null) return;
       if (verdict.frontier === 0 || cell.frontier === 0) cell.frontier = 0;
@@ -738,6 +747,6 @@ var huestepCharts = (function () {
 
   return {
     charts: charts, pictures: pictures, stabilityRows: stabilityRows, methodsIn: methodsIn,
-    groups: groups, short: short, time: time, inUnit: inUnit, who: who,
+    groups: groups, unsteady: unsteady, short: short, time: time, inUnit: inUnit, who: who,
   };
 })();

@@ -113,7 +113,7 @@
     parts.tools.replaceChildren(zoom, whole);
     parts.failures.hidden = chart.failures.length === 0;
     parts.failures.replaceChildren(
-      make('summary', {}, `Failed, and so without a point: ${chart.failures.length}`),
+      make('summary', {}, name === 'overall' ? `Fail in some of the cases: ${chart.failures.length}` : `Failed, and so without a point: ${chart.failures.length}`),
       make('ul', {}, ...chart.failures.map((/** @type {string} */ text) => make('li', {}, text))),
     );
   }
@@ -274,9 +274,9 @@
     const most = Math.max(0, ...doc.scenes.map((/** @type {Row} */ r) => r.overflow_share));
     if (doc.scenes.length > 0)
       said.push(most === 0 ? 'In none of the scenes here is a constraint left to one thread because it finds no colour.' : `At most ${short(100 * most)} % of the constraints of a scene here are left to one thread because they find no colour.`);
-    const unsteady = [...new Set(doc.prices.filter((/** @type {Row} */ r) => r.different_hashes > 1).map((/** @type {Row} */ r) => r.method))];
+    const unsteady = [...new Set(doc.prices.filter((/** @type {Row} */ r) => huestepCharts.unsteady(doc, r)).map((/** @type {Row} */ r) => r.method))];
     if (unsteady.length > 0)
-      said.push(`Different from run to run on two threads, and therefore no choice for lockstep: ${unsteady.join(', ')}.`);
+      said.push(`Different from run to run, or on two threads from one, and therefore no choice for lockstep: ${unsteady.join(', ')}.`);
     const planned = doc.effort_answers.filter((/** @type {Row} */ a) => a.least_fixed_substeps !== null);
     if (planned.length > 0) {
       const met = planned.filter((/** @type {Row} */ a) => a.planned_met);
@@ -284,12 +284,12 @@
       said.push(`Where some fixed n meets the need, planned effort meets it in ${met.length} of ${planned.length} scenes, and in ${cheaper.length} in less time than the smallest such n of that scene.`);
       // One number for all of them has to be that of the hardest.
       const all = Math.max(...planned.map((/** @type {Row} */ a) => a.least_fixed_substeps));
-      const share = planned.map((/** @type {Row} */ a) => {
+      const share = planned.flatMap((/** @type {Row} */ a) => {
         const fixed = doc.effort.find((/** @type {Row} */ r) => r.scene === a.scene && r.substeps === all);
-        return Math.log(a.planned_cpu_us / fixed.cpu_us_min);
+        return fixed ? [Math.log(a.planned_cpu_us / fixed.cpu_us_min)] : [];
       });
       const mean = Math.exp(share.reduce((/** @type {number} */ sum, /** @type {number} */ x) => sum + x, 0) / share.length);
-      said.push(`One fixed n for all of them would have to be ${all}; planned effort takes ${short(mean)} times its time (geometric mean).`);
+      said.push(`One fixed n for all of them would have to be ${all}; planned effort takes ${short(mean)} times its time (geometric mean over the ${share.length} scenes that were run with it).`);
     }
     byId('answers').replaceChildren(...said.map((text) => make('li', {}, text)));
   }
