@@ -13,8 +13,6 @@ using protocol::ByeReason;
 
 namespace {
 
-constexpr std::size_t keptLatencies = 4'096;
-
 std::string shortened(const std::string& text) {
     return text.substr(0, protocol::maxReportText);
 }
@@ -83,29 +81,11 @@ Status Replica::on(const protocol::Welcome& welcome, Instant) {
     m_statistics.player = welcome.player;
     m_token.reset();
     if (welcome.player != 0) m_token = welcome.resume;
-    m_maxCommandsPerIntent = std::max(welcome.maxCommandsPerIntent, 1u);
-    m_maxQueuedCommands = welcome.maxQueuedCommands;
-    m_maxQueuedBytes = welcome.maxQueuedBytes;
     m_ticksPerSecond = welcome.ticksPerSecond;
     // The tail of frames, or a snapshot: the server's next message says which.
     m_state = m_world ? State::Following : State::Waiting;
-    if (sameSeat) {
-        resendPending(welcome.lastSequence);
-    } else {
-        m_pending.clear();
-        m_nextSequence = welcome.lastSequence + 1;
-    }
+    m_commands.welcomed(welcome, sameSeat, m_statistics);
     return Done{};
-}
-
-void Replica::resendPending(std::uint64_t lastSequence) {
-    for (Pending& pending : m_pending) {
-        if (pending.command.sequence <= lastSequence) continue;
-        pending.seenAt.reset();
-        if (std::exchange(pending.sent, false)) ++m_statistics.commandsResent;
-    }
-    m_nextSequence = std::max(m_nextSequence, lastSequence + 1);
-    flushIntents();
 }
 
 // Frames -----------------------------------------------------------------------------------------
@@ -124,9 +104,10 @@ Status Replica::on(const protocol::Frame& frame, Instant now) {
     }
     m_world->step(frame.commands, m_config.resources);
     ++m_statistics.ticks;
-    noteOwnCommands(frame, now);
+    m_commands.applied(frame, m_world->events().commands, now, m_statistics);
     noteCommitted(frame.committed);
-    repeatOldest();
+    const auto patience = static_cast<std::uint64_t>(std::max(m_ticksPerSecond, 1.0f));
+    m_commands.repeatOldest(m_world->tick(), patience, m_outgoing, m_statistics);
     if (m_world->tick() >= m_lastCheckpoint + m_config.checkpointEvery) {
         m_lastCheckpoint = m_world->tick();
         protocol::Intent intent;
@@ -164,64 +145,9 @@ Status Replica::on(const protocol::HashNodes& nodes) {
     return Done{};
 }
 
-void Replica::noteOwnCommands(const protocol::Frame& frame, Instant now) {
-    if (m_statistics.player == 0) return;
-    for (const Command& command : frame.commands) {
-        if (command.author != m_statistics.player) continue;
-        notePassedOver(command.sequence, frame.tick);
-        const auto pending =
-            std::find_if(m_pending.begin(), m_pending.end(),
-                         [&](const Pending& p) { return p.command.sequence == command.sequence; });
-        if (pending == m_pending.end() || pending->seenAt) continue;
-        pending->seenAt = frame.tick;
-        m_movedAt = frame.tick;
-        if (std::exchange(pending->counted, true)) continue;
-        ++m_statistics.commandsSeen;
-        const double seconds = static_cast<double>(now - pending->asked) * 1e-9;
-        if (m_latencies.size() < keptLatencies) {
-            m_latencies.push_back(seconds);
-        } else {
-            m_latencies[m_latencyAt++ % keptLatencies] = seconds;
-        }
-    }
-    for (const CommandOutcome& outcome : m_world->events().commands) {
-        if (outcome.author == m_statistics.player && outcome.reason != Rejection::None) {
-            ++m_statistics.commandsRejected;
-        }
-    }
-}
-
-void Replica::notePassedOver(std::uint64_t sequence, std::uint64_t tick) {
-    // Sequences rise, so what the server let go of can never count any more.
-    for (Pending& pending : m_pending) {
-        if (pending.command.sequence >= sequence) return;
-        if (pending.seenAt) continue;
-        pending.seenAt = tick;
-        if (!std::exchange(pending.counted, true)) ++m_statistics.commandsLost;
-    }
-}
-
-void Replica::noteSnapshot() {
-    // Frames before a snapshot may never have come here; its record of this player tells which
-    // commands they had. Frames after it come again, with the commands they had.
-    std::uint64_t ordered = 0;
-    for (const PlayerRecord& player : m_world->players()) {
-        if (player.id == m_statistics.player && player.id != 0) ordered = player.lastSequence;
-    }
-    for (Pending& pending : m_pending) {
-        if (pending.seenAt && *pending.seenAt >= m_world->tick()) pending.seenAt.reset();
-        if (pending.seenAt || pending.command.sequence > ordered) continue;
-        pending.seenAt = m_world->tick() - 1;
-        if (!std::exchange(pending.counted, true)) ++m_statistics.commandsSeen;
-    }
-}
-
 void Replica::noteCommitted(std::uint64_t committed) {
     m_committed = std::max(m_committed, committed);
-    while (!m_pending.empty() && m_pending.front().seenAt &&
-           *m_pending.front().seenAt < m_committed) {
-        m_pending.pop_front();
-    }
+    m_commands.committed(m_committed);
 }
 
 // Snapshots --------------------------------------------------------------------------------------
@@ -299,90 +225,35 @@ void Replica::adopt(World world) {
         m_statistics.rolledBack += m_world->tick() - world.tick();
     }
     m_world = std::move(world);
-    m_lastCheckpoint = m_movedAt = m_world->tick();
-    noteSnapshot();
+    m_lastCheckpoint = m_world->tick();
+    m_commands.adopted(*m_world, m_statistics);
     ++m_statistics.snapshots;
     m_state = State::Following;
 }
 
-// Own commands -----------------------------------------------------------------------------------
+// Play -------------------------------------------------------------------------------------------
 
 Status Replica::act(Action action, Instant now) {
     if (m_state != State::Following || m_statistics.player == 0) {
         return Error{"this client does not play now"};
     }
-    if (m_pending.size() >= maxPendingCommands) {
-        return Error{std::to_string(m_pending.size()) + " own commands wait for their commit"};
-    }
-    Command command{m_statistics.player, m_nextSequence, std::move(action)};
-    // Whoever decodes it judges it: what the server would end the connection for stays here.
-    const Result<protocol::Message> taken =
-        protocol::readFrame(protocol::encode(protocol::Intent{{command}, std::nullopt}));
-    if (!taken) return Error{"a command that cannot be sent: " + taken.error().message};
-    const std::size_t bytes = protocol::commandBytes(command);
-    if (bytes > m_maxQueuedBytes) {
-        return Error{"a command of " + std::to_string(bytes) + " bytes; the server keeps at most " +
-                     std::to_string(m_maxQueuedBytes)};
-    }
-    ++m_nextSequence;
-    m_pending.push_back({std::move(command), now, bytes, std::nullopt});
-    ++m_statistics.commandsSent;
-    return Done{};
-}
-
-void Replica::flushIntents() {
-    if (m_state != State::Following && m_state != State::Waiting) return;
-    if (m_pending.empty() || m_pending.back().sent) return;
-    // As many to a message as Welcome allows and as the payload's cap holds, and in all no more
-    // than may wait at the server: what no frame has shown may be waiting there. The rest goes out
-    // as frames come.
-    const std::size_t room = protocol::maxPayload(protocol::MessageType::Intent) - 128;
-    protocol::Intent intent;
-    std::size_t bytes = 0;
-    std::size_t underWay = 0;
-    std::size_t underWayBytes = 0;
-    for (Pending& pending : m_pending) {
-        if (pending.seenAt) continue;
-        underWay += 1;
-        underWayBytes += pending.bytes;
-        if (underWay > m_maxQueuedCommands || underWayBytes > m_maxQueuedBytes) break;
-        if (std::exchange(pending.sent, true)) continue;
-        if (intent.commands.size() == m_maxCommandsPerIntent ||
-            (bytes + pending.bytes > room && !intent.commands.empty())) {
-            send(std::exchange(intent, {}));
-            bytes = 0;
-        }
-        bytes += pending.bytes;
-        intent.commands.push_back(pending.command);
-    }
-    if (!intent.commands.empty()) send(std::move(intent));
-}
-
-/// A server whose whole queue was full let go of commands without a word, and what follows them
-/// here might wait for ever for their frames. So the oldest is said again now and then; if it waits
-/// at the server, that lets the repetition go.
-void Replica::repeatOldest() {
-    const auto oldest = std::find_if(m_pending.begin(), m_pending.end(),
-                                     [](const Pending& pending) { return !pending.seenAt; });
-    const bool underWay = oldest != m_pending.end() && oldest->sent;
-    const auto patience = static_cast<std::uint64_t>(std::max(m_ticksPerSecond, 1.0f));
-    if (underWay && m_world->tick() < m_movedAt + patience) return;
-    m_movedAt = m_world->tick();
-    if (!underWay) return;
-    send(protocol::Intent{{oldest->command}, std::nullopt});
-    ++m_statistics.commandsResent;
+    return m_commands.ask(std::move(action), now, m_statistics);
 }
 
 void Replica::leave() {
     if (m_state == State::Apart) return;
-    flushIntents();
+    flush();
     send(protocol::Bye{ByeReason::Done, "leaves", false});
     m_token.reset();
     m_state = State::Apart;
 }
 
+void Replica::flush() {
+    if (m_state == State::Following || m_state == State::Waiting) m_commands.send(m_outgoing);
+}
+
 std::vector<protocol::Message> Replica::takeOutgoing() {
-    flushIntents();
+    flush();
     return std::exchange(m_outgoing, {});
 }
 
@@ -405,12 +276,7 @@ Statistics Replica::statistics() const {
         out.tick = m_world->tick();
         out.root = m_world->motionRoot();
     }
-    std::vector<double> sorted = m_latencies;
-    std::sort(sorted.begin(), sorted.end());
-    if (!sorted.empty()) {
-        out.latencyMedian = sorted[sorted.size() / 2];
-        out.latencyP99 = sorted[std::min(sorted.size() - 1, sorted.size() * 99 / 100)];
-    }
+    m_commands.describe(out);
     return out;
 }
 

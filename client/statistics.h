@@ -1,0 +1,41 @@
+/// Numbers of a client's life.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/world/command.h"
+#include "protocol/messages.h"
+
+namespace huestep::client {
+
+/// ns since some fixed moment; an argument, never a clock.
+using Instant = std::uint64_t;
+
+/// Over all connections of a client.
+struct Statistics {
+    PlayerId player = 0;
+    std::uint64_t tick = 0;   ///< of the world now
+    std::uint64_t root = 0;   ///< its motion root
+    std::uint64_t ticks = 0;  ///< frames applied
+    std::uint64_t hashesCompared = 0;
+    std::uint64_t mismatches = 0;
+    std::uint64_t corrections = 0;    ///< snapshots adopted because of a mismatch
+    std::uint64_t snapshots = 0;      ///< all snapshots adopted
+    std::uint64_t connections = 0;    ///< Welcomes
+    std::uint64_t resumes = 0;        ///< of them into the old seat
+    std::uint64_t rolledBack = 0;     ///< ticks undone because the server lost them uncommitted
+    std::uint64_t committedLost = 0;  ///< committed ticks the server did not have: must be 0
+    std::uint64_t commandsSent = 0;
+    std::uint64_t commandsResent = 0;
+    std::uint64_t commandsSeen = 0;      ///< own commands found in frames
+    std::uint64_t commandsLost = 0;      ///< never ordered: a later one was, so they never will be
+    std::uint64_t commandsRejected = 0;  ///< of them rejected by the world
+    std::uint64_t bytesIn = 0;           ///< set by the connection
+    std::uint64_t bytesOut = 0;
+    double latencyMedian = 0.0;  ///< s, from own command to the frame that has it
+    double latencyP99 = 0.0;
+    std::optional<protocol::DesyncReport> lastDesync;
+};
+
+}  // namespace huestep::client
