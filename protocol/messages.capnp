@@ -44,7 +44,8 @@ struct Welcome {
   epoch @2 :UInt32;                   # counts the server's starts of this session
   tick @3 :UInt64;                    # the next tick the server will close
   ticksPerSecond @4 :Float32;         # 1/s, (0, 10000]
-  inputDelay @5 :UInt32;              # ticks from an intent's arrival to its earliest tick, <= 600
+  inputDelay @5 :UInt32;              # ticks from an intent's arrival to its earliest tick, <= 600;
+                                      # for who predicts: from an input to the tick it asks for
   maxCommandsPerIntent @6 :UInt32;    # [1, 64]
   lastSequence @7 :UInt64;            # of this player, as far as the server has put in order
   resume @8 :Data;                    # 16 bytes: takes the seat up again after a lost connection
@@ -52,6 +53,8 @@ struct Welcome {
                                       # ends the connection with TooFast
   maxQueuedBytes @10 :UInt32 = 65536; # [16384, 16777216]: the same in bytes as commands take in an
                                       # Intent
+  maxInputDelay @11 :UInt32;          # <= 600: who predicts adapts its delay between inputDelay and
+                                      # this to its round trip; not above inputDelay: it is fixed
 }
 
 struct Spawn {
@@ -156,13 +159,16 @@ struct Intent {
       motionRoot @3 :UInt64;
     }
   }
+  tick @4 :UInt64;                    # of all its commands: the first frame that may have them; if
+                                      # that is closed, the next. 0: inputDelay after their arrival
 }
 
 struct Frame {
   # Server to client, one a tick: everything that decides one step. Also the record of the journal.
   tick @0 :UInt64;                    # leads from `tick` to `tick + 1` steps taken
   commands @1 :List(Command);         # in key order, at most 4096
-  substituted @2 :List(UInt32);       # players whose input came too late, at most 4096
+  substituted @2 :List(UInt32);       # players whose input came too late, at most 4096: nothing is
+                                      # heard of them, or commands here asked for a frame before
   previousRoot @3 :UInt64;            # motion root of the world this frame is applied to
   committed @4 :UInt64;               # frames below this tick are on disk
 }
@@ -217,6 +223,9 @@ struct Ping {
   # Either way; the answer is the same with `reply` set.
   nonce @0 :UInt64;
   reply @1 :Bool;
+  tick @2 :UInt64;                    # a server's reply: the tick it will close next when the Ping
+                                      # came, or 0
+  sinceClose @3 :UInt32;              # us, with tick: since it closed the one before
 }
 
 struct Bye {

@@ -52,7 +52,9 @@ struct Welcome {
     std::uint32_t epoch = 0;  ///< counts the server's starts of this session
     std::uint64_t tick = 0;   ///< the next tick the server will close
     float ticksPerSecond = 60.0f;
-    std::uint32_t inputDelay = 0;  ///< ticks between an intent's arrival and its earliest tick
+    /// Ticks between an intent's arrival and its earliest tick; for a client that predicts, between
+    /// an input and the tick it asks for.
+    std::uint32_t inputDelay = 0;
     std::uint32_t maxCommandsPerIntent = 16;
     std::uint64_t lastSequence = 0;  ///< of this player, as far as the server has put in order
     ResumeToken resume{};
@@ -60,6 +62,9 @@ struct Welcome {
     /// TooFast. In commands, and in bytes as `commandBytes` counts them.
     std::uint32_t maxQueuedCommands = 256;
     std::uint32_t maxQueuedBytes = 65'536;
+    /// A client that predicts adapts its delay between `inputDelay` and this to its round trip; not
+    /// above `inputDelay`: the delay is fixed.
+    std::uint32_t maxInputDelay = 0;
     friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 
@@ -74,16 +79,21 @@ struct Checkpoint {
 struct Intent {
     std::vector<Command> commands;  ///< author is set by the server; sequences rise
     std::optional<Checkpoint> checkpoint;
+    /// Of all the commands: the first frame that may have them; if that is closed when they come,
+    /// the next. 0: they ask for none, and wait for Welcome's `inputDelay`.
+    std::uint64_t tick = 0;
     friend bool operator==(const Intent&, const Intent&) = default;
 };
 
 /// Server → client: everything that decides one step. Also the record of the journal.
 struct Frame {
-    std::uint64_t tick = 0;             ///< this frame leads from `tick` to `tick + 1` steps taken
-    std::vector<Command> commands;      ///< in key order
-    std::vector<PlayerId> substituted;  ///< players whose input came too late for this tick
-    std::uint64_t previousRoot = 0;     ///< motion root of the world this frame is applied to
-    std::uint64_t committed = 0;        ///< frames below this tick are on disk
+    std::uint64_t tick = 0;         ///< this frame leads from `tick` to `tick + 1` steps taken
+    std::vector<Command> commands;  ///< in key order
+    /// Players whose input came too late for this tick: nothing is heard of them, or commands here
+    /// asked for a frame before. By id.
+    std::vector<PlayerId> substituted;
+    std::uint64_t previousRoot = 0;  ///< motion root of the world this frame is applied to
+    std::uint64_t committed = 0;     ///< frames below this tick are on disk
     friend bool operator==(const Frame&, const Frame&) = default;
 };
 
@@ -139,6 +149,9 @@ struct DesyncReport {
 struct Ping {
     std::uint64_t nonce = 0;
     bool reply = false;
+    // A server's reply, when the Ping came:
+    std::uint64_t tick = 0;        ///< that it will close next, or 0
+    std::uint32_t sinceClose = 0;  ///< µs since it closed the one before
     friend bool operator==(const Ping&, const Ping&) = default;
 };
 

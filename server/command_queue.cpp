@@ -8,7 +8,7 @@
 namespace huestep::server {
 
 CommandQueue::Admission CommandQueue::push(Command command, std::uint64_t earliest,
-                                           std::uint64_t lastSequence) {
+                                           std::uint64_t lastSequence, bool late) {
     const std::uint64_t last = std::max(lastSequence, lastQueued(command.author));
     if (command.sequence <= last) return Admission::Old;
     const std::size_t bytes = protocol::commandBytes(command);
@@ -21,15 +21,15 @@ CommandQueue::Admission CommandQueue::push(Command command, std::uint64_t earlie
         return Admission::QueueFull;
     }
     Line& line = m_lines[command.author];
-    line.commands.push_back({std::move(command), earliest, bytes});
+    line.commands.push_back({std::move(command), earliest, bytes, late});
     line.bytes += bytes;
     m_bytes += bytes;
     ++m_size;
     return Admission::Queued;
 }
 
-std::vector<Command> CommandQueue::take(std::uint64_t tick, std::uint32_t most) {
-    std::vector<Command> out;
+CommandQueue::Due CommandQueue::take(std::uint64_t tick, std::uint32_t most) {
+    Due out;
     if (m_lines.empty()) return out;
     const std::size_t players = m_lines.size();
     std::size_t room = m_limits.frameCommandBytes;
@@ -39,20 +39,23 @@ std::vector<Command> CommandQueue::take(std::uint64_t tick, std::uint32_t most) 
         takeFrom(next->second, tick, most, room, out);
         next = next->second.commands.empty() ? m_lines.erase(next) : std::next(next);
     }
+    std::sort(out.late.begin(), out.late.end());
     return out;
 }
 
 void CommandQueue::takeFrom(Line& line, std::uint64_t tick, std::uint32_t most, std::size_t& room,
-                            std::vector<Command>& out) {
+                            Due& out) {
+    bool late = false;
     for (std::uint32_t taken = 0; taken < m_limits.perPlayerPerFrame; ++taken) {
-        if (line.commands.empty() || out.size() >= most) return;
+        if (line.commands.empty() || out.commands.size() >= most) return;
         Waiting& first = line.commands.front();
         if (first.earliest > tick || first.bytes > room) return;
+        if (first.late && !std::exchange(late, true)) out.late.push_back(first.command.author);
         room -= first.bytes;
         line.bytes -= first.bytes;
         m_bytes -= first.bytes;
         --m_size;
-        out.push_back(std::move(first.command));
+        out.commands.push_back(std::move(first.command));
         line.commands.pop_front();
     }
 }

@@ -24,12 +24,17 @@ class CommandQueue {
     explicit CommandQueue(const Limits& limits) : m_limits(limits) {}
 
     /// Takes a command for a frame of `earliest` or later. `lastSequence` is that of the author's
-    /// last command in the world; a queued one raises it.
-    Admission push(Command command, std::uint64_t earliest, std::uint64_t lastSequence);
+    /// last command in the world; a queued one raises it. `late`: it asked for a frame before.
+    Admission push(Command command, std::uint64_t earliest, std::uint64_t lastSequence,
+                   bool late = false);
 
+    struct Due {
+        std::vector<Command> commands;
+        std::vector<PlayerId> late;  ///< authors of those that came late, by id, each once
+    };
     /// Takes out what is due at `tick`: at most `most` commands and `frameCommandBytes` of all,
     /// and each player's share. Who is served first goes round with the tick: none starves.
-    std::vector<Command> take(std::uint64_t tick, std::uint32_t most);
+    Due take(std::uint64_t tick, std::uint32_t most);
 
     /// Sequence of the author's last command that waits; 0: none.
     [[nodiscard]] std::uint64_t lastQueued(PlayerId player) const;
@@ -42,13 +47,13 @@ class CommandQueue {
         Command command;
         std::uint64_t earliest = 0;
         std::size_t bytes = 0;
+        bool late = false;
     };
     struct Line {
         std::deque<Waiting> commands;  ///< sequences rise
         std::size_t bytes = 0;
     };
-    void takeFrom(Line& line, std::uint64_t tick, std::uint32_t most, std::size_t& room,
-                  std::vector<Command>& out);
+    void takeFrom(Line& line, std::uint64_t tick, std::uint32_t most, std::size_t& room, Due& out);
 
     Limits m_limits;
     std::size_t m_size = 0;

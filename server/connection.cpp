@@ -64,7 +64,7 @@ void Connection::handle(protocol::Message message, Instant now) {
     } else if (auto* bye = std::get_if<protocol::Bye>(&message)) {
         return on(*bye, now);
     } else if (auto* ping = std::get_if<protocol::Ping>(&message)) {
-        if (m_phase != Phase::Greeting) return on(*ping);
+        if (m_phase != Phase::Greeting) return on(*ping, now);
     } else if (m_phase == Phase::Live) {
         if (auto* intent = std::get_if<protocol::Intent>(&message)) return on(*intent, now);
         if (auto* want = std::get_if<protocol::SnapshotRequest>(&message)) return on(*want, now);
@@ -124,6 +124,7 @@ void Connection::enter(Session& session, PlayerId player, Instant now) {
     welcome.maxCommandsPerIntent = m_context.limits.commandsPerIntent;
     welcome.lastSequence = player == 0 ? 0 : session.lastSequence(player);
     if (player != 0) welcome.resume = session.seats().issue(player);
+    welcome.maxInputDelay = m_context.limits.maxInputDelay;
     welcome.maxQueuedCommands = m_context.limits.queuedPerPlayer;
     welcome.maxQueuedBytes = static_cast<std::uint32_t>(m_context.limits.queuedBytesPerPlayer);
     send(welcome);
@@ -154,7 +155,7 @@ void Connection::on(protocol::Intent& intent, Instant now) {
                    now);
     }
     for (Command& command : intent.commands) {
-        switch (m_session->queue(m_player, std::move(command))) {
+        switch (m_session->queue(m_player, std::move(command), intent.tick)) {
             case CommandQueue::Admission::Queued:
                 ++m_context.counters.commandsQueued;
                 break;
@@ -222,8 +223,11 @@ void Connection::on(const protocol::DesyncReport& report, Instant now) {
         .to(m_context.log, Severity::Warning);
 }
 
-void Connection::on(const protocol::Ping& ping) {
-    if (!ping.reply) send(protocol::Ping{ping.nonce, true});
+void Connection::on(const protocol::Ping& ping, Instant now) {
+    if (ping.reply) return;
+    // With it a client that predicts learns how early what it sends comes here.
+    const Instant since = std::min<Instant>((now - m_session->closedAt()) / 1'000, 0xffff'ffffu);
+    send(protocol::Ping{ping.nonce, true, m_session->tick(), static_cast<std::uint32_t>(since)});
 }
 
 void Connection::on(const protocol::Bye& bye, Instant now) {

@@ -110,7 +110,7 @@ class Connection {
     void on(const protocol::SnapshotRequest& request, Instant now);
     void on(const protocol::HashQuery& query, Instant now);
     void on(const protocol::DesyncReport& report, Instant now);
-    void on(const protocol::Ping& ping);
+    void on(const protocol::Ping& ping, Instant now);
     void on(const protocol::Bye& bye, Instant now);
 
     void enter(Session& session, PlayerId player, Instant now);

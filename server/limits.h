@@ -60,6 +60,8 @@ struct Limits {
     std::uint32_t joinsPerFrame = 16;
     std::uint32_t seats = 1'024;
     std::uint32_t inputDelay = 0;        ///< ticks between an intent and its earliest frame
+    std::uint32_t maxInputDelay = 0;     ///< clients that predict adapt theirs up to this
+    std::uint32_t askedAhead = 150;      ///< ticks; a command that asks for a later one comes then
     std::uint32_t lateTicks = 60;        ///< a player silent for longer is `substituted`
     Instant seatKept = 30 * second;      ///< for a player whose connection broke
     std::uint32_t recentFrames = 1'800;  ///< frames kept for those who are behind

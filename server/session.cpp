@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 #include <utility>
 
 namespace huestep::server {
@@ -33,7 +34,8 @@ Session::Session(SessionStart start, const Limits& limits, Instant now)
       m_frames(limits.recentFrames, limits.recentBytes),
       m_keyframes(limits.keyframes),
       m_rebuilder(m_frames, m_keyframes, limits),
-      m_committed(m_world.tick()) {
+      m_committed(m_world.tick()),
+      m_closedAt(now) {
     for (protocol::Frame& frame : start.tail) m_frames.push(std::move(frame));
     if (start.base) m_keyframes.push(std::move(start.base));
     m_keyframes.push(takeSnapshot(m_world));
@@ -58,8 +60,8 @@ ClosedTick Session::closeTick(Instant now, const StepResources& with) {
     assert(mayClose());
     protocol::Frame frame;
     frame.tick = tick();
-    frame.commands = gatherCommands(now);
-    frame.substituted = m_seats.late(tick());
+    m_closedAt = now;
+    gather(frame, now);
     frame.previousRoot = m_world.motionRoot();
     frame.committed = m_committed;
 
@@ -81,8 +83,10 @@ ClosedTick Session::closeTick(Instant now, const StepResources& with) {
     return out;
 }
 
-std::vector<Command> Session::gatherCommands(Instant now) {
-    std::vector<Command> commands = m_seats.commandsFor(m_world, sequenceIn(m_world, 0), now);
+/// The commands of the frame, and whose came too late.
+void Session::gather(protocol::Frame& frame, Instant now) {
+    std::vector<Command>& commands = frame.commands;
+    commands = m_seats.commandsFor(m_world, sequenceIn(m_world, 0), now);
     for (const Command& command : commands) {
         if (const auto* removed = std::get_if<RemovePlayer>(&command.action)) {
             m_queue.forget(removed->player);
@@ -96,11 +100,13 @@ std::vector<Command> Session::gatherCommands(Instant now) {
     // The world's own cap is of players' commands alone, as this one is.
     const std::uint32_t room =
         std::min(m_limits.commandsPerFrame, m_world.info().maxCommandsPerTick);
-    std::vector<Command> queued = m_queue.take(tick(), room);
-    commands.insert(commands.end(), std::make_move_iterator(queued.begin()),
-                    std::make_move_iterator(queued.end()));
+    CommandQueue::Due due = m_queue.take(tick(), room);
+    commands.insert(commands.end(), std::make_move_iterator(due.commands.begin()),
+                    std::make_move_iterator(due.commands.end()));
     sortByKey(commands);
-    return commands;
+    const std::vector<PlayerId> silent = m_seats.late(tick());
+    std::set_union(silent.begin(), silent.end(), due.late.begin(), due.late.end(),
+                   std::back_inserter(frame.substituted));
 }
 
 void Session::committed(std::uint64_t below) {
@@ -121,10 +127,13 @@ ClosedTick Session::finalRecord() const {
     return out;
 }
 
-CommandQueue::Admission Session::queue(PlayerId player, Command command) {
+CommandQueue::Admission Session::queue(PlayerId player, Command command, std::uint64_t asked) {
     command.author = player;
-    return m_queue.push(std::move(command), tick() + m_limits.inputDelay,
-                        sequenceIn(m_world, player));
+    const std::uint64_t earliest = asked == 0
+                                       ? tick() + m_limits.inputDelay
+                                       : std::clamp(asked, tick(), tick() + m_limits.askedAhead);
+    const bool late = asked != 0 && asked < tick();
+    return m_queue.push(std::move(command), earliest, sequenceIn(m_world, player), late);
 }
 
 std::uint64_t Session::lastSequence(PlayerId player) const {

@@ -52,6 +52,8 @@ class Session {
     [[nodiscard]] const World& world() const { return m_world; }
     [[nodiscard]] std::uint64_t tick() const { return m_world.tick(); }
     [[nodiscard]] std::uint64_t committedTick() const { return m_committed; }
+    /// When the last tick closed, or when the session began.
+    [[nodiscard]] Instant closedAt() const { return m_closedAt; }
     [[nodiscard]] double ticksPerSecond() const;
     /// Whether the scene lets players in at all; without, everyone watches.
     [[nodiscard]] bool hasPlayers() const;
@@ -72,7 +74,8 @@ class Session {
     [[nodiscard]] const Seats& seats() const { return m_seats; }
 
     /// Puts a player's command in the queue; the author is the seat's, whatever was sent.
-    CommandQueue::Admission queue(PlayerId player, Command command);
+    /// `asked`: the tick it is for, or 0; see `protocol::Intent`.
+    CommandQueue::Admission queue(PlayerId player, Command command, std::uint64_t asked = 0);
     /// Sequence of the player's last command, queued or ordered.
     [[nodiscard]] std::uint64_t lastSequence(PlayerId player) const;
     [[nodiscard]] std::size_t queued() const { return m_queue.size(); }
@@ -97,7 +100,7 @@ class Session {
     [[nodiscard]] std::uint32_t definitions() const { return m_definitions; }
 
  private:
-    std::vector<Command> gatherCommands(Instant now);
+    void gather(protocol::Frame& frame, Instant now);
     void noteDefinitions();
     /// The same snapshot, counted for as long as anybody holds it; null: too many are held.
     SharedSnapshot lend(const SharedSnapshot& snapshot);
@@ -116,6 +119,7 @@ class Session {
     SharedSnapshot m_fresh;  ///< the last one made for a joiner
     std::vector<std::weak_ptr<const Snapshot>> m_lent;
     std::uint64_t m_committed;
+    Instant m_closedAt;
     std::optional<std::string> m_failure;
     std::uint32_t m_definitions = 1;
     std::array<std::uint64_t, 4> m_definitionMark{};

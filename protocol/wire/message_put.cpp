@@ -115,11 +115,13 @@ void put(schema::Welcome::Builder to, const Welcome& message) {
     to.setLastSequence(message.lastSequence);
     to.setMaxQueuedCommands(message.maxQueuedCommands);
     to.setMaxQueuedBytes(message.maxQueuedBytes);
+    to.setMaxInputDelay(message.maxInputDelay);
     to.setResume(dataOf(message.resume.data(), message.resume.size()));
 }
 
 void put(schema::Intent::Builder to, const Intent& message) {
     putCommands(to, message.commands);
+    to.setTick(message.tick);
     if (!message.checkpoint) return;
     auto some = to.getCheckpoint().initSome();
     some.setTick(message.checkpoint->tick);
@@ -182,6 +184,8 @@ void put(schema::DesyncReport::Builder to, const DesyncReport& message) {
 void put(schema::Ping::Builder to, const Ping& message) {
     to.setNonce(message.nonce);
     to.setReply(message.reply);
+    to.setTick(message.tick);
+    to.setSinceClose(message.sinceClose);
 }
 
 void put(schema::Bye::Builder to, const Bye& message) {

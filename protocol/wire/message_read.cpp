@@ -175,12 +175,15 @@ Welcome read(Reading& in, schema::Welcome::Reader from) {
     refuseOutside(in, "maxQueuedCommands", message.maxQueuedCommands, 1, maxQueuedCommands);
     message.maxQueuedBytes = from.getMaxQueuedBytes();
     refuseOutside(in, "maxQueuedBytes", message.maxQueuedBytes, minQueuedBytes, maxQueuedBytes);
+    message.maxInputDelay = from.getMaxInputDelay();
+    refuseAbove(in, "maxInputDelay", message.maxInputDelay, maxInputDelay);
     return message;
 }
 
 Intent read(Reading& in, schema::Intent::Reader from) {
     Intent message;
     message.commands = readCommands(in, from.getCommands(), maxCommandsPerIntent);
+    message.tick = from.getTick();
     const auto checkpoint = from.getCheckpoint();
     switch (checkpoint.which()) {
         case schema::Intent::Checkpoint::NONE:
@@ -252,7 +255,7 @@ DesyncReport read(Reading& in, schema::DesyncReport::Reader from) {
 }
 
 Ping read(Reading&, schema::Ping::Reader from) {
-    return {from.getNonce(), from.getReply()};
+    return {from.getNonce(), from.getReply(), from.getTick(), from.getSinceClose()};
 }
 
 Bye read(Reading& in, schema::Bye::Reader from) {

@@ -75,11 +75,11 @@ TEST(Codec, EveryActionComesBackAsItWas) {
 TEST(Codec, DefaultMessagesOfEveryTypeHaveASizeKnownBeforehand) {
     // A message without lists and texts: header, root pointer and the root struct. The numbers are
     // from the schema by hand; a field that does not grow the struct's last word changes nothing.
-    EXPECT_EQ(encode(Ping{}).size(), 16u + 8 + 16);
+    EXPECT_EQ(encode(Ping{}).size(), 16u + 8 + 24);
     EXPECT_EQ(encode(SnapshotEnd{}).size(), 16u + 8 + 8);
     EXPECT_EQ(encode(SnapshotBegin{}).size(), 16u + 8 + 24);
     EXPECT_EQ(encode(Frame{}).size(), 16u + 8 + 40);
-    EXPECT_EQ(encode(Intent{}).size(), 16u + 8 + 32);
+    EXPECT_EQ(encode(Intent{}).size(), 16u + 8 + 40);
 }
 
 TEST(Codec, BytesOfOldMessagesStillMeanTheSame) {
@@ -216,9 +216,9 @@ TEST(Codec, ListsThatOverlapCannotMakeMoreThanTheirBytesAreWorth) {
     auto frame = encode(Intent{commands, {}});
     auto payload = std::vector<std::byte>(frame.begin() + headerBytes, frame.end());
     ASSERT_TRUE(decode(MessageType::Intent, payload).ok());
-    // Commands follow the root (1 + 4 words) and the list's tag; a command is 6 words, its spawn
+    // Commands follow the root (1 + 5 words) and the list's tag; a command is 6 words, its spawn
     // pointer the last. Point every spawn at the first one's struct.
-    const auto pointerAt = [&](std::size_t command) { return 8 * (6 + 6 * command + 5); };
+    const auto pointerAt = [&](std::size_t command) { return 8 * (7 + 6 * command + 5); };
     std::uint64_t first = 0;
     std::memcpy(&first, payload.data() + pointerAt(0), 8);
     ASSERT_EQ(first >> 48, 2u) << "not the spawn's struct pointer";
@@ -279,6 +279,9 @@ TEST(CodecLimits, WelcomeRanges) {
     bad = good;
     bad.inputDelay = maxInputDelay + 1;
     EXPECT_EQ(answerTo(bad), "Welcome.inputDelay: 601 is above 600");
+    bad = good;
+    bad.maxInputDelay = maxInputDelay + 1;
+    EXPECT_EQ(answerTo(bad), "Welcome.maxInputDelay: 601 is above 600");
     bad = good;
     bad.maxCommandsPerIntent = 0;
     EXPECT_EQ(answerTo(bad), "Welcome.maxCommandsPerIntent: 0 is below 1");

@@ -25,12 +25,12 @@ std::string reasonOf(const Status& status) {
 
 TEST(Frame, HeaderIsSixteenBytesAsTheProtocolPageSays) {
     const auto frame = encode(Ping{7, false});
-    ASSERT_EQ(frame.size(), 16u + 24u);
+    ASSERT_EQ(frame.size(), 16u + 32u);
     EXPECT_EQ(frame[0], std::byte{'u'});
     EXPECT_EQ(frame[1], std::byte{'H'});
     EXPECT_EQ(frame[2], std::byte{1});
     EXPECT_EQ(frame[3], std::byte{11});
-    EXPECT_EQ(frame[4], std::byte{24});
+    EXPECT_EQ(frame[4], std::byte{32});
     EXPECT_EQ(frame[5], std::byte{0});
     // The checksum, made again from its description.
     std::vector<std::byte> covered(frame.begin(), frame.begin() + 8);
@@ -82,7 +82,7 @@ TEST(Frame, AHeaderIsRefusedForWhatIsWrongWithIt) {
     EXPECT_EQ(readsAs(3, 14), "message type 14 is unknown");
     EXPECT_EQ(readsAs(4, 25), "Ping: 25 bytes are not a whole number of 8-byte words");
     EXPECT_EQ(readsAs(4, 0), "Ping: 0 bytes are not a whole number of 8-byte words");
-    EXPECT_EQ(readsAs(5, 16), "Ping: 4120 bytes, at most 4096");
+    EXPECT_EQ(readsAs(5, 16), "Ping: 4128 bytes, at most 4096");
 }
 
 TEST(FrameSplitter, GivesTheSameMessagesHoweverTheStreamIsCut) {
@@ -126,11 +126,11 @@ TEST(FrameSplitter, HoldsOnlyWhatIsMissingItsEnd) {
 
 TEST(FrameSplitter, KeepsMessagesBeforeAnErrorAndThenStaysFailed) {
     auto stream = joined({Ping{1, false}, Ping{2, false}, Ping{3, false}});
-    stream[2 * 40 + 20] ^= std::byte{1};
+    stream[2 * 48 + 20] ^= std::byte{1};
     FrameSplitter splitter;
     std::vector<Message> out;
     EXPECT_EQ(reasonOf(splitter.feed(stream, out)),
-              "byte 80 of the stream: Ping: the checksum does not match");
+              "byte 96 of the stream: Ping: the checksum does not match");
     EXPECT_EQ(out.size(), 2u);
     EXPECT_TRUE(splitter.failed());
     EXPECT_EQ(splitter.buffered(), 0u);
@@ -145,7 +145,7 @@ TEST(FrameSplitter, RefusesALengthFromTheHeaderAloneAndWithoutRoomForIt) {
     FrameSplitter splitter;
     std::vector<Message> out;
     EXPECT_EQ(reasonOf(splitter.feed(std::span(frame).first(16), out)),
-              "byte 0 of the stream: Ping: 2130706456 bytes, at most 4096");
+              "byte 0 of the stream: Ping: 2130706464 bytes, at most 4096");
 }
 
 TEST(FrameSplitter, GateLowersWhatMayComeByState) {
@@ -165,7 +165,7 @@ TEST(FrameSplitter, GateLowersWhatMayComeByState) {
     const auto ping = encode(Ping{});
     FrameSplitter fresh(gate, &state);
     EXPECT_EQ(reasonOf(fresh.feed(std::span(ping).first(16), out)),
-              "byte 0 of the stream: Ping: 24 bytes are not expected now");
+              "byte 0 of the stream: Ping: 32 bytes are not expected now");
     state.greeted = true;
     EXPECT_TRUE(splitter.feed(ping, out).ok());
 }

@@ -220,9 +220,10 @@ inline Message randomMessage(Draw& draw, MessageType type) {
                            randomToken(draw),
                            static_cast<std::uint32_t>(1 + draw.below(maxQueuedCommands)),
                            static_cast<std::uint32_t>(
-                               minQueuedBytes + draw.below(maxQueuedBytes - minQueuedBytes + 1))};
+                               minQueuedBytes + draw.below(maxQueuedBytes - minQueuedBytes + 1)),
+                           static_cast<std::uint32_t>(draw.below(maxInputDelay + 1))};
         case MessageType::Intent: {
-            Intent intent{randomCommands(draw, 6), {}};
+            Intent intent{randomCommands(draw, 6), {}, draw.coin() ? draw.bits() : 0};
             if (draw.coin()) intent.checkpoint = Checkpoint{draw.bits(), draw.bits()};
             return intent;
         }
@@ -261,7 +262,7 @@ inline Message randomMessage(Draw& draw, MessageType type) {
                                 draw.text(maxReportText),
                                 draw.text(maxReportText)};
         case MessageType::Ping:
-            return Ping{draw.bits(), draw.coin()};
+            return Ping{draw.bits(), draw.coin(), draw.bits(), draw.word()};
         case MessageType::Bye:
             return Bye{static_cast<ByeReason>(draw.below(12)), draw.text(maxByeText), draw.coin()};
         default:

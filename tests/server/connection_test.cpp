@@ -203,7 +203,32 @@ TEST(Connection, APingIsAnswered) {
     peer.watch();
     peer.say(protocol::Ping{77, false});
     peer.read();
-    EXPECT_EQ(*peer.last<protocol::Ping>(), (protocol::Ping{77, true}));
+    EXPECT_EQ(*peer.last<protocol::Ping>(), (protocol::Ping{77, true, desk.session->tick(), 0}));
+}
+
+TEST(Connection, APingsAnswerSaysHowFarTheSessionIsIntoItsTick) {
+    Desk desk;
+    Peer peer(desk);
+    peer.join();
+    desk.tick(5);
+    desk.now += 7 * millisecond;
+    peer.say(protocol::Ping{78, false});
+    desk.now += 3 * millisecond;  // it waits to be written: that does not count
+    peer.read();
+    EXPECT_EQ(*peer.last<protocol::Ping>(),
+              (protocol::Ping{78, true, desk.session->tick(), 7'000}));
+}
+
+TEST(Connection, CommandsGoIntoTheFrameThatTheirIntentAsksFor) {
+    Desk desk;
+    Peer peer(desk);
+    const protocol::Welcome welcome = peer.join();
+    const std::uint64_t asked = desk.session->tick() + 4;
+    peer.say(protocol::Intent{{{0, welcome.lastSequence + 1, Release{}}}, std::nullopt, asked});
+    desk.tick(8);
+    for (std::uint64_t tick = asked - 4; tick < asked + 4; ++tick) {
+        EXPECT_EQ(desk.session->frames().find(tick)->commands.size(), tick == asked ? 1u : 0u);
+    }
 }
 
 TEST(Connection, MoreMessagesThanTheRateEndIt) {

@@ -65,10 +65,10 @@ TEST(CommandQueue, GivesEachPlayersCommandsInOrderWithinTheFramesCaps) {
     limits.perPlayerPerFrame = 2;
     CommandQueue queue{limits};
     for (std::uint64_t s = 1; s <= 5; ++s) queue.push(impulse(7, s), 0, 0);
-    EXPECT_EQ(queue.take(0, 100), (std::vector<Command>{impulse(7, 1), impulse(7, 2)}));
-    EXPECT_EQ(queue.take(1, 1), (std::vector<Command>{impulse(7, 3)}));
-    EXPECT_EQ(queue.take(2, 100), (std::vector<Command>{impulse(7, 4), impulse(7, 5)}));
-    EXPECT_TRUE(queue.take(3, 100).empty());
+    EXPECT_EQ(queue.take(0, 100).commands, (std::vector<Command>{impulse(7, 1), impulse(7, 2)}));
+    EXPECT_EQ(queue.take(1, 1).commands, (std::vector<Command>{impulse(7, 3)}));
+    EXPECT_EQ(queue.take(2, 100).commands, (std::vector<Command>{impulse(7, 4), impulse(7, 5)}));
+    EXPECT_TRUE(queue.take(3, 100).commands.empty());
     EXPECT_EQ(queue.size(), 0u);
     EXPECT_EQ(queue.bytes(), 0u);
 }
@@ -76,8 +76,20 @@ TEST(CommandQueue, GivesEachPlayersCommandsInOrderWithinTheFramesCaps) {
 TEST(CommandQueue, NothingIsTakenBeforeItsEarliestTick) {
     CommandQueue queue{Limits{}};
     queue.push(impulse(1, 1), 10, 0);
-    EXPECT_TRUE(queue.take(9, 100).empty());
-    EXPECT_EQ(queue.take(10, 100).size(), 1u);
+    EXPECT_TRUE(queue.take(9, 100).commands.empty());
+    EXPECT_EQ(queue.take(10, 100).commands.size(), 1u);
+}
+
+TEST(CommandQueue, WhoseCommandsCameLateIsToldOnceAFrame) {
+    CommandQueue queue{Limits{}};
+    queue.push(impulse(9, 1), 5, 0, true);
+    queue.push(impulse(9, 2), 5, 0, true);
+    queue.push(impulse(3, 1), 5, 0, true);
+    queue.push(impulse(3, 2), 6, 0, true);
+    queue.push(impulse(4, 1), 5, 0, false);
+    EXPECT_TRUE(queue.take(4, 100).late.empty());
+    EXPECT_EQ(queue.take(5, 100).late, (std::vector<PlayerId>{3, 9}));
+    EXPECT_EQ(queue.take(6, 100).late, (std::vector<PlayerId>{3}));
 }
 
 TEST(CommandQueue, AFullFrameStarvesNobody) {
@@ -87,7 +99,8 @@ TEST(CommandQueue, AFullFrameStarvesNobody) {
     }
     std::array<int, 5> served{};
     for (std::uint64_t tick = 0; tick < 4; ++tick) {
-        for (const Command& command : queue.take(tick, 3)) ++served[command.author];
+        const CommandQueue::Due due = queue.take(tick, 3);
+        for (const Command& command : due.commands) ++served[command.author];
     }
     for (PlayerId player = 1; player <= 4; ++player) EXPECT_EQ(served[player], 3) << player;
 }
@@ -97,7 +110,7 @@ TEST(CommandQueue, AForgottenPlayerTakesNoRoom) {
     queue.push(impulse(1, 1), 0, 0);
     queue.push(impulse(2, 1), 0, 0);
     queue.forget(1);
-    EXPECT_EQ(queue.take(0, 100), (std::vector<Command>{impulse(2, 1)}));
+    EXPECT_EQ(queue.take(0, 100).commands, (std::vector<Command>{impulse(2, 1)}));
     EXPECT_EQ(queue.bytes(), 0u);
 }
 

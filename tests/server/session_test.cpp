@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "desk.h"
 #include "protocol/codec.h"
 
@@ -221,6 +223,41 @@ TEST(Session, InputDelayHoldsCommandsBack) {
     bench.session.queue(player, {0, 1, Release{}});
     while (frameOf(bench.close()).commands.empty()) ASSERT_LT(bench.session.tick(), tick + 9);
     EXPECT_EQ(bench.session.tick(), tick + 4);
+}
+
+TEST(Session, ACommandIsInTheFrameThatItAsksFor) {
+    Limits limits;
+    limits.inputDelay = 3;  // of those that ask for none
+    limits.askedAhead = 20;
+    Bench bench(limits);
+    const PlayerId player = bench.seat();
+    const std::uint64_t now = bench.session.tick();
+    bench.session.queue(player, {0, 1, Release{}}, now);
+    bench.session.queue(player, {0, 2, Release{}}, now + 5);
+    bench.session.queue(player, {0, 3, Release{}}, now + 2);      // after the one before it
+    bench.session.queue(player, {0, 4, Release{}}, now + 1'000);  // too far ahead
+    std::map<std::uint64_t, std::uint64_t> tickOf;
+    for (int i = 0; i < 30; ++i) {
+        const protocol::Frame frame = frameOf(bench.close());
+        EXPECT_TRUE(frame.substituted.empty()) << i;
+        for (const Command& command : frame.commands) tickOf[command.sequence] = frame.tick - now;
+    }
+    EXPECT_EQ(tickOf, (std::map<std::uint64_t, std::uint64_t>{{1, 0}, {2, 5}, {3, 5}, {4, 20}}));
+}
+
+TEST(Session, ACommandForAClosedFrameIsInTheNextWhichSaysSo) {
+    Bench bench;
+    const PlayerId player = bench.seat();
+    bench.close();
+    const std::uint64_t tick = bench.session.tick();
+    bench.session.queue(player, {0, 1, Release{}}, tick - 1);
+    bench.session.queue(player, {0, 2, Release{}}, tick + 1);
+    const protocol::Frame late = frameOf(bench.close());
+    ASSERT_EQ(late.commands.size(), 1u);
+    EXPECT_EQ(late.substituted, (std::vector<PlayerId>{player}));
+    const protocol::Frame early = frameOf(bench.close());
+    EXPECT_EQ(early.commands.size(), 1u);
+    EXPECT_TRUE(early.substituted.empty());
 }
 
 TEST(Session, AFrameTakesNoMoreOfPlayersThanItsLimits) {
