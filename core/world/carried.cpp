@@ -46,7 +46,12 @@ void Carried::become(const Carried& other, bool related) {
     }
     acc.freeContacts = its.freeContacts;
     acc.inLanes = its.inLanes;
-    if (!same(acc.planStamp, its.planStamp)) acc.plan = its.plan;
+    if (!same(acc.planStamp, its.planStamp)) {
+        acc.plan = its.plan;
+    } else {
+        // What a batch knows of the effort of its islands goes on while the plan stays.
+        acc.plan.batches = its.plan.batches;
+    }
     acc.linksStale = its.linksStale;
     acc.rowsHold = its.rowsHold;
     const std::size_t knownBlocks = std::min(acc.rowStamps.size(), its.rowStamps.size());
