@@ -3,7 +3,8 @@
 #include <atomic>
 #include <cassert>
 #include <numeric>
-#include <thread>
+
+#include "core/parallel/thread.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -42,9 +43,7 @@ std::uint64_t mix(std::uint64_t x) {
 struct Executor::Team {
     explicit Team(int threads, std::uint64_t seed, Clock clockToUse)
         : count(threads),
-          looks(static_cast<unsigned>(threads) <= std::thread::hardware_concurrency()
-                    ? looksBeforeSleep
-                    : 0),
+          looks(static_cast<unsigned>(threads) <= hardwareThreads() ? looksBeforeSleep : 0),
           shuffleSeed(seed),
           clock(clockToUse),
           waits(static_cast<std::size_t>(threads)) {}
@@ -56,7 +55,7 @@ struct Executor::Team {
             pauseBriefly();
         }
         while (value.load(std::memory_order_acquire) == old) {
-            value.wait(old, std::memory_order_acquire);
+            sleepWhile(value, old);
         }
     }
 
@@ -120,7 +119,7 @@ struct Executor::Team {
     alignas(64) std::atomic<std::uint32_t> arrived{0};
     alignas(64) std::atomic<std::uint32_t> phase{0};
     std::atomic<bool> stop{false};
-    std::vector<std::thread> crew;
+    std::vector<Thread> crew;
 };
 
 Executor::Executor(int threads, std::uint64_t shuffleSeed, Clock clock)
@@ -135,7 +134,7 @@ Executor::~Executor() {
     m_team->stop.store(true, std::memory_order_release);
     m_team->use.fetch_add(1, std::memory_order_acq_rel);
     m_team->use.notify_all();
-    for (std::thread& thread : m_team->crew) thread.join();
+    for (Thread& thread : m_team->crew) thread.join();
 }
 
 void Executor::forBlocks(std::uint32_t count, std::uint32_t grain,

@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
 
 #include "core/scene/scenes.h"
 
@@ -205,6 +207,26 @@ std::vector<SceneParameter> allParameters(const CatalogEntry& entry) {
     return all;
 }
 
+/// The number that is all of the text, correctly rounded and without locale.
+std::optional<double> numberOf(std::string_view text) {
+#if defined(__wasm__)
+    // libc++ 19 has no from_chars of reals. The C library there knows one locale; what it takes
+    // beyond from_chars starts with a space or a plus, or has an x.
+    const bool more = text.find_first_of(" \t\n\v\f\r+") == 0;
+    if (text.empty() || more || text.find_first_of("xX") != text.npos) return std::nullopt;
+    const std::string ended(text);
+    char* end = nullptr;
+    const double value = std::strtod(ended.c_str(), &end);
+    if (end != ended.c_str() + ended.size()) return std::nullopt;
+    return value;
+#else
+    double value = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (read.ec != std::errc() || read.ptr != text.data() + text.size()) return std::nullopt;
+    return value;
+#endif
+}
+
 /// Reads one `parameter=value` into its place in `values`.
 Status readParameter(const CatalogEntry& entry, std::string_view text, std::vector<double>& values,
                      std::vector<bool>& given) {
@@ -225,11 +247,9 @@ Status readParameter(const CatalogEntry& entry, std::string_view text, std::vect
     }
     if (given[place]) return Error{path + " is given twice"};
     const std::string_view digits = text.substr(equals + 1);
-    double value = 0.0;
-    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (read.ec != std::errc() || read.ptr != digits.data() + digits.size()) {
-        return Error{path + ": " + quoted(digits) + " is not a number"};
-    }
+    const std::optional<double> number = numberOf(digits);
+    if (!number) return Error{path + ": " + quoted(digits) + " is not a number"};
+    const double value = *number;
     const bool inRange = value >= parameter.low && value <= parameter.high;
     if (!inRange || (parameter.whole && value != std::floor(value))) {
         return Error{path + " must be a " + (parameter.whole ? "whole " : "") + "number from " +

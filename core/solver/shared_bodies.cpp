@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <thread>
 
+#include "core/parallel/thread.h"
 #include "core/solver/contact_kernels.h"
 #include "core/solver/lane_copies.h"
 #include "core/solver/soft_step.h"
@@ -74,7 +74,7 @@ class Held {
         int looks = 0;
         while (taken.exchange(1, std::memory_order_acquire) != 0) {
             while (taken.load(std::memory_order_relaxed) != 0) {
-                if (++looks % patience == 0) std::this_thread::yield();
+                if (++looks % patience == 0) letOthersRun();
             }
         }
     }

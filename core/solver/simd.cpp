@@ -10,12 +10,13 @@ struct Named {
     Simd simd;
     std::string_view name;
 };
-constexpr std::array<Named, 6> names{{{Simd::Auto, "auto"},
+constexpr std::array<Named, 7> names{{{Simd::Auto, "auto"},
                                       {Simd::Scalar, "scalar"},
                                       {Simd::Sse2, "sse2"},
                                       {Simd::Avx2, "avx2"},
                                       {Simd::Avx512, "avx512"},
-                                      {Simd::Neon, "neon"}}};
+                                      {Simd::Neon, "neon"},
+                                      {Simd::Simd128, "simd128"}}};
 
 }  // namespace
 
@@ -28,8 +29,10 @@ std::vector<Simd> availableSimd() {
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
         found.push_back(Simd::Avx512);
     }
-#elif defined(__aarch64__)  // the NEON of 32-bit processors has no denormals
+#elif defined(__aarch64__)       // the NEON of 32-bit processors has no denormals
     found.push_back(Simd::Neon);
+#elif defined(__wasm_simd128__)  // a module either has it or cannot be loaded
+    found.push_back(Simd::Simd128);
 #endif
     return found;
 }
@@ -42,6 +45,7 @@ std::size_t widthIndex(Simd simd) {
             return 0;
         case Simd::Sse2:
         case Simd::Neon:
+        case Simd::Simd128:
             return 1;
         case Simd::Avx2:
             return 2;

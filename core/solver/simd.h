@@ -9,7 +9,7 @@
 namespace huestep {
 
 /// Which instructions the solver uses. Results are the same for all.
-enum class Simd : std::uint8_t { Auto, Scalar, Sse2, Avx2, Avx512, Neon };
+enum class Simd : std::uint8_t { Auto, Scalar, Sse2, Avx2, Avx512, Neon, Simd128 };
 
 /// The widths this machine can run, narrowest first; `Auto` is not among them.
 std::vector<Simd> availableSimd();
@@ -30,6 +30,8 @@ std::size_t widthIndex(Simd simd);
 #define HUESTEP_AVX512 \
     __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"), flatten, noinline))
 #define HUESTEP_EACH_WIDTH(F) F(1, ) F(4, ) F(8, HUESTEP_AVX2) F(16, HUESTEP_AVX512)
+#elif defined(__wasm__) && !defined(__wasm_simd128__)
+#define HUESTEP_EACH_WIDTH(F) F(1, )
 #else
 #define HUESTEP_EACH_WIDTH(F) F(1, ) F(4, )
 #endif

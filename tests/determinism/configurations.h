@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "core/world/world.h"
 #include "tests/core/spoil.h"
 #include "tests/core/support.h"
+#include "tests/determinism/commands.h"
 
 namespace huestep::test {
 
@@ -111,20 +111,5 @@ class ConfiguredRun {
     Random m_random;
     std::unique_ptr<Executor> m_executor;
 };
-
-using CommandsOf = std::function<std::vector<Command>(const World&)>;
-
-/// The commands of nobody.
-inline std::vector<Command> silence(const World&) {
-    return {};
-}
-
-/// What the host of a scene of the catalogue does.
-inline CommandsOf hostOf(const std::string& catalogText) {
-    const Result<Script> script = scriptFromCatalog(catalogText);
-    EXPECT_TRUE(script.ok()) << catalogText;
-    if (!script.ok()) return silence;
-    return [script = *script](const World& world) { return script.commands(world.tick()); };
-}
 
 }  // namespace huestep::test
