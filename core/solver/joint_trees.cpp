@@ -154,6 +154,11 @@ void JointTrees::dropHeld(Rows& rows) {
             const std::uint32_t count = rigidRowCount(row);
             const std::uint32_t ofChild = std::min(m_freedom[edge.child], count);
             if (ofChild + m_freedom[edge.parent] < count) continue;
+            const auto inertia = [&](std::uint32_t node) {
+                return rows.sources[m_nodes[node].place].inverseInertia;
+            };
+            const bool turns = inertia(edge.child) > 0.0f || inertia(edge.parent) > 0.0f;
+            if (angleRow(row) < maxRigidRows && !turns) continue;
             m_freedom[edge.parent] -= count - ofChild;
             row.direct = true;
             m_edges[kept++] = edge;

@@ -118,7 +118,10 @@ class JointTrees {
     [[nodiscard]] Node& nodeA(const Edge& edge);
     [[nodiscard]] Node& nodeB(const Edge& edge);
     void beginTree(Tree& tree, Rows& rows);
+    [[nodiscard]] bool isWildStart(Tree& tree, Rows& rows);
+    void backToStart(Tree& tree, Rows& rows);
     void beginDamped(Tree& tree, Rows& rows);
+    [[nodiscard]] double kineticOf(const Tree& tree);
     bool isWild(const Tree& tree, float first, float second, const Rows& rows);
     void addStiffness(const Tree& tree, const Rows& rows);
     void setMasses(const Tree& tree, const Rows& rows);

@@ -364,6 +364,29 @@ TEST(JointTrees, HoldABridgeAtBothEnds) {
     EXPECT_FALSE(bench.trees.leavesWork());
 }
 
+TEST(JointTrees, LeaveAnAngleThatNeitherBodyCanTurnToTheSweeps) {
+    // A lift on a rail, and two welded bodies of unlike mass, none of which can turn.
+    Scene scene = sceneOf(
+        {BodyDef{}, boxAt({0.0f, 0.0f}), boxAt({5.0f, 0.0f}, 0.2f), boxAt({6.0f, 0.0f}, 0.7f)});
+    scene.sleep = false;
+    for (std::size_t i = 1; i < 4; ++i) scene.bodies[i].fixedRotation = true;
+    JointDef rail = hinge(0, {}, 1, {});
+    rail.kind = JointKind::Prismatic;
+    rail.axis = {0.0f, 1.0f};
+    JointDef weld = hinge(2, {0.5f, 0.0f}, 3, {-0.5f, 0.0f});
+    weld.kind = JointKind::Weld;
+    scene.joints = {rail, weld};
+    const Bench bench(scene);
+    EXPECT_FALSE(bench.rowOf(0).direct);
+    EXPECT_FALSE(bench.rowOf(1).direct);
+    World world = worldOf(scene);
+    run(world, 60);
+    EXPECT_TRUE(world.events().quarantined.empty());
+    for (std::size_t i = 1; i < 4; ++i) {
+        EXPECT_NEAR(wide(world.motions()[i].velocity.y), -10.0, 0.1) << "body " << i;
+    }
+}
+
 TEST(JointTrees, LeaveSpringsMotorsAndLimitsToTheSweeps) {
     Scene scene = sceneOf({BodyDef{}, boxAt({1.0f, 0.0f})}, {hinge(0, {}, 1, {-1.0f, 0.0f})});
     EXPECT_FALSE(Bench(scene).trees.leavesWork());
