@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/solver/effort.h"
+#include "core/state/effort.h"
 
 namespace huestep {
 
@@ -54,8 +54,8 @@ void Builder::findAllIslands() {
         ++plan.constraintsOf[island];
         plan.jointsOf[island] += i < plan.jointLinks ? 1u : 0u;
     }
-    if (demand.substeps != 0) return;
     effortOf.assign(count, 0);
+    if (demand.efforts.empty()) return;
     rampOfIsland.assign(count, 0);
     for (const std::uint32_t body : plan.awake) {
         // The highest level of its bodies; it is gentle if they all are.
@@ -64,9 +64,11 @@ void Builder::findAllIslands() {
         if (plan.islandOf[body] == body) island = effort;
         const bool gentle = gentleAt(island) && gentleAt(effort);
         const bool trees = treesAt(island) || treesAt(effort);
-        island = EffortPlan{std::max(levelOf(island), levelOf(effort)), 0, gentle, trees}.packed();
+        const bool recovers = recoversAt(island) || recoversAt(effort);
+        const std::uint8_t level = std::max(levelOf(island), levelOf(effort));
+        island = EffortPlan{level, 0, gentle, trees, recovers}.packed();
         std::uint8_t& ramp = rampOfIsland[plan.islandOf[body]];
-        ramp = std::max(ramp, demand.ramps[body]);
+        if (demand.substeps == 0) ramp = std::max(ramp, demand.ramps[body]);
     }
 }
 
@@ -79,7 +81,7 @@ void Builder::packBatches() {
     plan.islands = 0;
     // By ramp, rest and level: the batch that small islands still go to.
     constexpr std::uint32_t levels = highestEffort + 1;
-    std::array<std::uint32_t, (highestRamp + 1) * 4 * levels> openOf{};
+    std::array<std::uint32_t, (highestRamp + 1) * 16 * levels> openOf{};
     openOf.fill(none);
     for (const std::uint32_t body : plan.awake) {
         if (plan.islandOf[body] != body) continue;
@@ -97,8 +99,10 @@ void Builder::packBatches() {
         const std::uint8_t ramp = planned ? rampOfIsland[body] : std::uint8_t{0};
         const bool trees =
             demand.trees || (planned && mayHaveTrees(plan, body) && treesAt(effortOf[body]));
-        const std::uint32_t kind = (gentle ? 1u : 0u) + (trees ? 2u : 0u);
-        std::uint32_t& open = openOf[(ramp * 4u + kind) * levels + effort];
+        const bool recovers = !trees && size <= mostRecovering && recoversAt(effortOf[body]);
+        const std::uint32_t kind = (gentle ? 1u : 0u) + (trees ? 2u : 0u) + (recovers ? 4u : 0u) +
+                                   (isLarge(size) ? 8u : 0u);
+        std::uint32_t& open = openOf[(ramp * 16u + kind) * levels + effort];
         if (giant || open == none || plan.batches[open].constraints + size > limits.batchSize) {
             const auto fresh = static_cast<std::uint32_t>(plan.batches.size());
             Batch batch;
@@ -108,6 +112,8 @@ void Builder::packBatches() {
             batch.gentle = gentle;
             batch.substeps = planned ? substepsOf(effort) : demand.substeps;
             batch.trees = trees;
+            batch.recovers = recovers;
+            batch.large = isLarge(size);
             plan.batches.push_back(batch);
             batchOf[body] = fresh;
             if (!giant) open = fresh;

@@ -12,7 +12,7 @@
 #include "core/graph/hubs.h"
 #include "core/graph/incidence.h"
 #include "core/graph/islands.h"
-#include "core/solver/effort.h"
+#include "core/state/effort.h"
 #include "core/state/records.h"
 
 namespace huestep {
@@ -50,7 +50,9 @@ struct Batch {
     std::uint8_t ramp = 0;    ///< see `rampOf`
     bool still = false;       ///< whether its bodies are known to be at that level, and not calm
     bool giant = false;
-    bool trees = false;  ///< its joint trees are solved at once, so its joints are not in lanes
+    bool trees = false;     ///< its joint trees are solved at once, so its joints are not in lanes
+    bool recovers = false;  ///< bodies that began deep inside each other come apart
+    bool large = false;     ///< its island may have no more than the standard effort
 };
 
 /// Constraints that a batch may have: about 150 kB of rows, which a core's second-level cache
@@ -111,9 +113,8 @@ struct PlanLimits {
 struct PlanDemand {
     std::uint32_t substeps = 4;  ///< of every island; 0: of each the highest effort of its bodies
     bool colours = true;         ///< else key order alone: all goes to the overflow
-    // By body, where `substeps` is 0.
-    std::span<const std::uint8_t> efforts{};
-    std::span<const std::uint8_t> ramps{};
+    std::span<const std::uint8_t> efforts{};  ///< by body; where `substeps` is 0 with their levels
+    std::span<const std::uint8_t> ramps{};    ///< by body, where `substeps` is 0
     bool hubs = true;       ///< buckets for them; else what finds no colour goes to the overflow
     bool pinLanes = false;  ///< revolutes fill lanes in the overflow too
     bool incidence = false;

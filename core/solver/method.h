@@ -70,6 +70,7 @@ struct MethodTraits {
     bool teams;               ///< whether several workers may go through one batch together
     bool deterministic;       ///< else the bits depend on how threads meet
     bool substepping = true;  ///< else one step of Δt; a scene's substeps are iterations
+    bool recovers = false;    ///< brings bodies apart as recovery.h has it
     bool hubs = true;         ///< as in `PlanDemand`, the next three too
     bool pinLanes = false;
     bool incidence = false;

@@ -72,13 +72,6 @@ float impulseScale(std::uint8_t from, std::uint8_t to) {
     return static_cast<float>(substepsOf(from)) / static_cast<float>(substepsOf(to));
 }
 
-/// Of two bodies' reaches the smaller, of those that there are: m.
-float smallerReach(const SolverWorld& world, std::size_t a, std::size_t b) {
-    const float ofA = world.reach[a], ofB = world.reach[b];
-    if (!(ofA > 0.0f)) return ofB;
-    return ofB > 0.0f ? minOf(ofA, ofB) : ofA;
-}
-
 /// One lane of it.
 template <template <class> class Fields>
 void writeLane(const Fields<float>& record, Fields<LaneRow>& rows, std::uint32_t lane) {
@@ -163,9 +156,7 @@ JointRow Rows::jointRow(const SolverWorld& world, const Batch& batch, std::uint3
     row.iB = sources[b].inverseInertia;
     if (world.planned) {
         scale(row.impulses, impulseScale(effortOf({row.bodyA, row.bodyB}), batch.effort));
-        row.allowance =
-            1.0f / (world.need.joint > 0.0f ? world.need.joint
-                                            : visualTolerance(smallerReach(world, of.a, of.b)));
+        row.allowance = 1.0f / allowedError(world.need.joint, world.reach[of.a], world.reach[of.b]);
     }
     return row;
 }
@@ -271,9 +262,8 @@ void Rows::fitToEffort(const Plan& plan, const SolverWorld& world, const Batch& 
         if (made != batch.effort) scaleLane(rows, lane, impulseScale(made, batch.effort));
         const auto bodyA = static_cast<std::size_t>(rows.motionA[lane]);
         const auto bodyB = static_cast<std::size_t>(rows.motionB[lane]);
-        const float most = world.need.penetration > 0.0f
-                               ? world.need.penetration
-                               : visualTolerance(smallerReach(world, bodyA, bodyB));
+        const float most =
+            allowedError(world.need.penetration, world.reach[bodyA], world.reach[bodyB]);
         // Rows against fixed bodies have twice the frequency.
         const bool fixed = places.a < 0 || places.b < 0;
         rows.allowance[lane] = (fixed ? 0.25f : 1.0f) / most;
@@ -315,8 +305,12 @@ void Rows::settleContacts(const Plan& plan, const SolverWorld& world, const Cont
         blocks[block].anyCold = 0;
         blockFeatures[block].cold = false;
     }
-    if (world.planned) kernels.strain(&blocks[range.begin], range.end - range.begin);
-    if (!kernels.settle(&blocks[range.begin], range.end - range.begin)) return;
+    bool anyHit = false;
+    for (std::uint32_t block = range.begin; block < range.end; ++block) {
+        if (world.planned) kernels.strain(&blocks[block], 1);
+        anyHit = kernels.settle(&blocks[block], 1) || anyHit;
+    }
+    if (!anyHit) return;
     for (std::uint32_t at = range.begin * blockLanes; at < range.end * blockLanes; ++at) {
         const std::uint32_t place = plan.contactOfLane[at];
         const ContactBlock& rows = blocks[at / blockLanes];

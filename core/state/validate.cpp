@@ -10,7 +10,7 @@
 
 #include "core/collision/hull.h"
 #include "core/math/finite.h"
-#include "core/solver/effort.h"
+#include "core/state/effort.h"
 
 namespace huestep {
 

@@ -204,15 +204,24 @@ void World::Data::findTrees() {
     Shapes& s = accelerators.shapes;
     const auto bodies = static_cast<std::uint32_t>(state.bodies.size());
     s.wantsTree.assign(s.jointBodies.empty() ? 0 : bodies, 0);
+    s.jointed.assign(s.wantsTree.size(), 0);
     if (s.jointBodies.empty()) return;
     std::vector<std::uint8_t> dynamic(bodies);
     for (std::uint32_t i = 0; i < bodies; ++i) dynamic[i] = state.bodies[i].dynamic();
     std::vector<Link> links;
-    for (const ConstraintPlaces& j : s.jointBodies) links.push_back({j.a, j.b, 0});
+    const auto isHeld = [&](std::size_t joint) {  // by a player: that is no joint of its own
+        return state.joints[joint].kind() == JointKind::Mouse;
+    };
+    for (std::size_t i = 0; i < s.jointBodies.size(); ++i) {
+        if (!isHeld(i)) links.push_back({s.jointBodies[i].a, s.jointBodies[i].b, 0});
+    }
     UnionFind sets;
     findIslands(links, dynamic, sets);
     std::vector<JointedBodies> of(bodies);
-    for (const ConstraintPlaces& j : s.jointBodies) {
+    for (std::size_t i = 0; i < s.jointBodies.size(); ++i) {
+        if (isHeld(i)) continue;
+        const ConstraintPlaces& j = s.jointBodies[i];
+        s.jointed[j.a] = s.jointed[j.b] = 1;
         JointedBodies& joined = of[sets.find(dynamic[j.b] ? j.b : j.a)];
         ++joined.joints;
         const float a = state.bodies[j.a].inverseMass, b = state.bodies[j.b].inverseMass;

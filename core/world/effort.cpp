@@ -7,6 +7,7 @@
 
 #include "core/parallel/over_range.h"
 #include "core/solver/effort.h"
+#include "core/solver/method.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
@@ -17,7 +18,8 @@ namespace {
 // lets bodies fall asleep; and stays so up to another speed, as softer contacts give way at first.
 constexpr float restSpeed = 0.1f;
 constexpr float unrestSpeed = 0.5f;
-// Slower than this nothing hits anything: its contacts may be stiff.
+// Slower than this nothing hits anything, and contacts may be stiff. They stay so until something
+// does, however fast all move together.
 constexpr float gentleSpeed = 1.0f;
 
 RowStrain larger(const RowStrain& a, const RowStrain& b) {
@@ -35,6 +37,28 @@ float mostOf(const float (&lanes)[blockLanes], float most) {
     return most;
 }
 
+/// How far the shapes of two bodies may overlap where a scene leaves it at *visual*, m.
+float visualOf(const World::Data& world, std::uint32_t a, std::uint32_t b) {
+    const std::vector<float>& reach = world.accelerators.shapes.reach;
+    return allowedError(0.0f, reach[a], reach[b]);
+}
+
+/// How far a lane's points overlap at the end of the step, m.
+float overlapOf(const ContactBlock& rows, std::size_t lane, std::span<const SolverBody> bodies) {
+    const SolverBody& a = bodies[static_cast<std::size_t>(readPlace(rows.bodyA[lane]))];
+    const SolverBody& b = bodies[static_cast<std::size_t>(readPlace(rows.bodyB[lane]))];
+    const Vec2 normal{rows.normalX[lane], rows.normalY[lane]};
+    float overlap = 0.0f;
+    for (const ContactPointRows& p : rows.points) {
+        if (!(p.normalMass[lane] > 0.0f)) continue;
+        const Vec2 rA = rotate(Rotation{a.dc, a.ds}, Vec2{p.anchorAx[lane], p.anchorAy[lane]});
+        const Vec2 rB = rotate(Rotation{b.dc, b.ds}, Vec2{p.anchorBx[lane], p.anchorBy[lane]});
+        const Vec2 moved = (Vec2{b.dx, b.dy} - Vec2{a.dx, a.dy}) + (rB - rA);
+        overlap = maxOf(overlap, -(p.separation[lane] + dot(normal, moved)));
+    }
+    return overlap;
+}
+
 /// The islands of one batch. Batches share none, so those of several may work side by side.
 class BatchEffort {
  public:
@@ -44,7 +68,7 @@ class BatchEffort {
           m_rows(world.accelerators.rows),
           m_batch(batch) {
         const float h = world.state.info().stepSeconds / static_cast<float>(batch.substeps);
-        const RowFrequency frequency = rowFrequency(batch.substeps, batch.gentle);
+        const RowFrequency frequency = rowFrequency(batch.substeps, batch.gentle, batch.large);
         m_contactFloor = softFloor(frequency.contact * rampShare(batch.ramp), h);
         m_jointFloor = softFloor(frequency.joint * rampShare(batch.ramp), h);
     }
@@ -52,6 +76,8 @@ class BatchEffort {
     /// Writes the levels of the batch's bodies, and makes impulses fit them. Returns whether any
     /// island changes its level.
     bool decide();
+    /// Where substeps are fixed: which islands go on to recover.
+    bool decideRecovery();
 
  private:
     template <class F>
@@ -62,9 +88,13 @@ class BatchEffort {
     [[nodiscard]] RowStrain strainOfJoint(const JointRow& row) const;
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
     [[nodiscard]] float speedOf(std::uint32_t body) const;
-    [[nodiscard]] EffortRange rangeOf(std::uint32_t island, float fastest) const;
+    [[nodiscard]] bool wantsTree(std::uint32_t body) const;
+    [[nodiscard]] EffortRange rangeOf(std::uint32_t island, float fastest, bool hit) const;
+    [[nodiscard]] bool hitsAnything() const;
+    void gatherHits();
     [[nodiscard]] bool stays(const RowStrain& strain);
     void gather(const std::optional<RowStrain>& strain);
+    void gatherOverlap();
     void rescale() const;
 
     World::Data& m_world;
@@ -73,6 +103,7 @@ class BatchEffort {
     Batch& m_batch;
     float m_contactFloor;  // m, of 1 m/s a substep
     float m_jointFloor;
+    bool m_hits = false;  ///< whether any contact met hard
 };
 
 template <class F>
@@ -172,7 +203,7 @@ void BatchEffort::gather(const std::optional<RowStrain>& strain) {
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island = {strain.value_or(RowStrain{}), calmSteps, 0.0f, {}};
+            island = {strain.value_or(RowStrain{}), calmSteps, 0.0f, false, false, false, {}};
         }
         const BodyMotion& motion = m_world.state.motions[body];
         // A body that was lifted to the batch's level by others has not been calm there.
@@ -180,6 +211,7 @@ void BatchEffort::gather(const std::optional<RowStrain>& strain) {
         const std::int8_t calm = there ? motion.calm : std::min(motion.calm, std::int8_t{0});
         island.calm = std::min(island.calm, calm);
         island.fastest = maxOf(island.fastest, speedOf(body));
+        island.keepsTrees = island.keepsTrees || wantsTree(body);
     });
     if (strain) return;
     overRows([&](BodyPlace a, BodyPlace b, const RowStrain& ofRow) {
@@ -188,28 +220,36 @@ void BatchEffort::gather(const std::optional<RowStrain>& strain) {
     });
 }
 
-EffortRange BatchEffort::rangeOf(std::uint32_t island, float fastest) const {
+bool BatchEffort::wantsTree(std::uint32_t body) const {
+    const std::vector<std::uint8_t>& wants = m_world.accelerators.shapes.wantsTree;
+    return !wants.empty() && wants[body] != 0;
+}
+
+EffortRange BatchEffort::rangeOf(std::uint32_t island, float fastest, bool hit) const {
     const bool jointed = m_plan.jointsOf[island] > 0;
     const float still = m_batch.effort == restingEffort ? unrestSpeed : restSpeed;
-    return {!jointed && fastest < still ? restingEffort : standardEffort,
-            affordableEffort(m_plan.constraintsOf[island]), fastest < gentleSpeed, jointed,
-            mayHaveTrees(m_plan, island)};
+    return {.least = !jointed && fastest < still ? restingEffort : standardEffort,
+            .most = affordableEffort(m_plan.constraintsOf[island]),
+            .gentle = !hit && (m_batch.gentle || fastest < gentleSpeed),
+            .jointed = jointed,
+            .mayHaveTrees = mayHaveTrees(m_plan, island)};
 }
 
 /// Whether a giant that is strained so stays as it is, so that nothing is to be written.
 bool BatchEffort::stays(const RowStrain& strain) {
-    if (!m_batch.giant || !m_batch.still) return false;
+    if (!m_batch.giant || !m_batch.still || m_batch.recovers) return false;
+    const float enough = m_batch.gentle ? unrestSpeed : gentleSpeed;  // more tells nothing
     float fastest = 0.0f;
     std::uint32_t island = none;
     for (std::uint32_t p = m_batch.firstPlace;
-         p < m_batch.endPlace && (island == none || fastest < gentleSpeed); ++p) {
+         p < m_batch.endPlace && (island == none || fastest < enough); ++p) {
         const std::uint32_t body = m_plan.bodyOfPlace[p];
         if (m_world.activity[body] != movesNow) continue;
         island = m_plan.islandOf[body];
         fastest = maxOf(fastest, speedOf(body));
     }
     const EffortPlan now{m_batch.effort, 0, m_batch.gentle, m_batch.trees};
-    const EffortRange range = rangeOf(island, fastest);
+    const EffortRange range = rangeOf(island, fastest, m_hits);
     const EffortPlan next = planEffort(now, byCure(strain, now.trees, range.mayHaveTrees), range);
     m_world.islandEfforts[island].strain = strain;
     return next.packed() == now.packed() && next.calm == 0 && m_batch.ramp == 0;
@@ -217,22 +257,34 @@ bool BatchEffort::stays(const RowStrain& strain) {
 
 bool BatchEffort::decide() {
     const RowStrain most = mostStrain();
+    m_hits = hitsAnything();
     if (stays(most)) return false;
     // Where every island is as calm as the one that is strained most, none needs a closer look.
-    const EffortRange widest{restingEffort, highestEffort, m_batch.gentle};
     const float rows = maxOf(most.contacts, maxOf(most.swept, most.direct));
-    const bool alike = m_batch.giant || (m_batch.ramp == 0 &&
-                                         isCalm(m_batch.effort, rows, widest) && isCalmTree(rows));
+    const auto isCalmThere = [&](bool gentle) {  // whatever its islands are from now on
+        const std::uint8_t highest = m_batch.large ? standardEffort : highestEffort;
+        return isCalm(m_batch.effort, rows,
+                      {.least = restingEffort, .most = highest, .gentle = gentle});
+    };
+    const bool alike = m_batch.giant || (m_batch.ramp == 0 && isCalmThere(false) &&
+                                         isCalmThere(true) && isCalmTree(rows));
     gather(alike ? std::optional(most) : std::nullopt);
-    const EffortPlan now{m_batch.effort, 0, m_batch.gentle, m_batch.trees};
+    if (m_hits) gatherHits();
+    if (m_batch.recovers) gatherOverlap();
+    const EffortPlan now{m_batch.effort, 0, m_batch.gentle, m_batch.trees, m_batch.recovers};
     bool changes = false, scales = false, still = true;
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            const EffortRange range = rangeOf(body, island.fastest);
+            EffortRange range = rangeOf(body, island.fastest, island.hit);
+            range.keepsTrees = island.keepsTrees;
             const bool trees = now.trees && m_plan.jointsOf[body] > 0;
-            const IslandStrain strain = byCure(island.strain, trees, range.mayHaveTrees);
+            RowStrain load = island.strain;
+            // What a blow asks for is over before it could be given.
+            if (island.hit) load.contacts = minOf(load.contacts, 1.0f);
+            const IslandStrain strain = byCure(load, trees, range.mayHaveTrees);
             island.next = planEffort({now.level, island.calm, now.gentle, trees}, strain, range);
+            island.next.recovers = now.recovers && island.overlaps;
             scales |= island.next.level != now.level;
             changes |= island.next.packed() != now.packed();
             still = still && island.next.packed() == now.packed() && island.next.calm == 0;
@@ -247,55 +299,76 @@ bool BatchEffort::decide() {
     return changes;
 }
 
-/// The level that a contact asks for that begins in this step.
-std::uint8_t effortOfBeginning(const World::Data& world, const Contact& contact) {
-    const WorldInfo& info = world.state.info();
-    const BodyMotion& a = world.state.motions[contact.bodyA];
-    const BodyMotion& b = world.state.motions[contact.bodyB];
-    const float approach = dot(contact.normal(), a.velocity - b.velocity);
-    const std::vector<float>& reach = world.accelerators.shapes.reach;
-    const float most = info.penetrationNeed > 0.0f
-                           ? info.penetrationNeed
-                           : visualTolerance(minOf(reach[contact.bodyA], reach[contact.bodyB]));
-    const float strain =
-        strainOfBeginning(contact.inverseMassA, contact.inverseMassB, approach,
-                          length(info.gravity), info.stepSeconds, 1.0f / most, standardEffort);
-    return std::min(neededEffort(standardEffort, strain), highestEffort);
+bool BatchEffort::hitsAnything() const {
+    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
+        const ContactBlock& rows = m_rows.blocks[block];
+        if (rows.mayHit != 0 && std::ranges::any_of(rows.hit, [](int h) { return h != 0; })) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void BatchEffort::gatherHits() {
+    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
+        const ContactBlock& rows = m_rows.blocks[block];
+        if (rows.mayHit == 0) continue;
+        for (std::uint32_t i = 0; i < blockLanes; ++i) {
+            if (rows.hit[i] != 0) islandOf(rows.bodyA[i], rows.bodyB[i]).hit = true;
+        }
+    }
+}
+
+/// Which islands still have a row that overlaps by more than it may.
+void BatchEffort::gatherOverlap() {
+    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
+        const ContactBlock& rows = m_rows.blocks[block];
+        for (std::uint32_t i = 0; i < blockLanes; ++i) {
+            if (m_plan.contactOfLane[block * blockLanes + i] == none) continue;
+            IslandEffort& island = islandOf(rows.bodyA[i], rows.bodyB[i]);
+            const float allowed = visualOf(m_world, static_cast<std::uint32_t>(rows.motionA[i]),
+                                           static_cast<std::uint32_t>(rows.motionB[i]));
+            island.overlaps = island.overlaps || overlapOf(rows, i, m_rows.bodies) > allowed;
+        }
+    }
+}
+
+bool BatchEffort::decideRecovery() {
+    if (!m_batch.recovers) return false;
+    gather(RowStrain{});
+    gatherOverlap();
+    bool changes = false;
+    overBodies([&](std::uint32_t body) {
+        const bool overlaps = m_world.islandEfforts[m_plan.islandOf[body]].overlaps;
+        EffortPlan next;
+        next.recovers = overlaps;
+        m_world.state.motions[body].effort = next.packed();
+        changes = changes || !overlaps;
+    });
+    return changes;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> World::Data::effortsNow() const {
-    std::vector<std::uint8_t> efforts;
-    efforts.reserve(state.motions.size());
-    for (const BodyMotion& motion : state.motions) efforts.push_back(motion.effort);
-    for (const std::uint32_t place : begun) {
-        const Contact& contact = accelerators.contacts[place];
-        const std::uint8_t needed = effortOfBeginning(*this, contact);
-        for (const std::uint32_t body : {contact.bodyA, contact.bodyB}) {
-            const EffortPlan raised{std::max(levelOf(efforts[body]), needed), 0,
-                                    gentleAt(efforts[body]), treesAt(efforts[body])};
-            efforts[body] = raised.packed();
-        }
-    }
-    const std::vector<std::uint8_t>& trees = accelerators.shapes.wantsTree;
-    for (std::size_t body = 0; body < trees.size(); ++body) {
-        if (trees[body] != 0) efforts[body] |= EffortPlan::treesBit;
-    }
-    return efforts;
+/// Whether bodies' efforts are of any use: planned substeps are a matter of such methods alone.
+bool World::Data::recovers() const {
+    return traitsOf(state.info().solver()).recovers;
 }
 
 void World::Data::planEfforts(Executor* executor) {
-    if (!state.info().planned()) return;
+    if (!recovers()) return;
+    const bool planned = state.info().planned();
     Plan& plan = accelerators.plan;
     islandEfforts.resize(state.bodies.size());
     std::vector<std::uint8_t> changes(plan.batches.size(), 0);
     overRange(executor, plan.batches.size(), 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            changes[i] = BatchEffort(*this, plan.batches[i]).decide();
+            BatchEffort batch(*this, plan.batches[i]);
+            changes[i] = planned ? batch.decide() : batch.decideRecovery();
         }
     });
     for (const std::uint8_t batch : changes) accelerators.linksStale |= batch != 0;
+    if (!planned) return;
     reportTooStiff();
     // Who touches nothing starts anew where it lands.
     for (const std::uint32_t body : plan.freeBodies) {

@@ -183,8 +183,8 @@ void World::Data::updatePlan(Executor* executor) {
         std::vector<std::uint8_t> efforts, ramps;
         std::uint32_t substeps = state.info().substeps;
         if (substeps == 0 && !state.info().planned()) substeps = substepsOf(standardEffort);
+        if (recovers()) efforts = effortsNow();
         if (state.info().planned()) {
-            efforts = effortsNow();
             ramps.reserve(state.motions.size());
             for (const BodyMotion& motion : state.motions) ramps.push_back(rampOf(motion.calm));
         }

@@ -36,6 +36,7 @@ struct Shapes {
     std::vector<ConstraintPlaces> jointBodies;  // by joint
     std::vector<std::uint32_t> kinematic;       // places of kinematic bodies
     std::vector<std::uint8_t> wantsTree;        // by body: its joints are solved at once (effort.h)
+    std::vector<std::uint8_t> jointed;          // by body; both are empty without joints
 };
 
 /// A pair of shapes that are near each other.
@@ -119,8 +120,11 @@ struct RowStrain {
 /// What the last step said of an island; of its lowest body.
 struct IslandEffort {
     RowStrain strain;
-    std::int8_t calm = 0;  // the lowest of its bodies
-    float fastest = 0;     // m/s, of any of its points
+    std::int8_t calm = 0;     // the lowest of its bodies
+    float fastest = 0;        // m/s, of any of its points
+    bool overlaps = false;    // by more than is allowed; known where it recovers
+    bool hit = false;         // a contact of it met hard
+    bool keepsTrees = false;  // joints of it are always solved at once
     EffortPlan next;
 };
 
@@ -218,6 +222,7 @@ struct World::Data : Carried {
     // effort.cpp
     /// From the rows of this step, the levels of the next one.
     void planEfforts(Executor* executor);
+    [[nodiscard]] bool recovers() const;
     void reportTooStiff();
     /// By body, those of this step: what the state says, and more where contacts begin.
     [[nodiscard]] std::vector<std::uint8_t> effortsNow() const;

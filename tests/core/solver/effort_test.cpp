@@ -110,8 +110,44 @@ TEST(Effort, OfUnlikeMassesAndLongRowsIsTheirTreeFromTheStart) {
     EXPECT_TRUE(wantsTree({.joints = 11, .ratio = 10.0f}));
     EXPECT_TRUE(wantsTree({.joints = 40}));
     EXPECT_FALSE(wantsTree({.joints = 10, .ratio = 9.0f})) << "a ragdoll";
-    EXPECT_FALSE(wantsTree({.joints = 1})) << "a pendulum";
+    EXPECT_FALSE(wantsTree({.joints = 3}));
+    EXPECT_TRUE(wantsTree({.joints = 2})) << "a double pendulum";
     EXPECT_FALSE(wantsTree({}));
+}
+
+TEST(Effort, ComesDownFromARaisedLevelWhereTreesAreKeptToo) {
+    const EffortRange kept{.jointed = true, .mayHaveTrees = true, .keepsTrees = true};
+    EffortPlan plan{.level = 5, .trees = true};
+    for (int i = 0; i < 100; ++i) plan = planEffort(plan, {0.01f, 0.01f}, kept);
+    EXPECT_EQ(plan.level, standardEffort);
+    EXPECT_TRUE(plan.trees);
+    // Where nothing keeps them they go first.
+    plan = {.level = 5, .trees = true};
+    for (int i = 0; i < calmSteps; ++i) {
+        plan = planEffort(plan, {0.01f, 0.01f}, {.jointed = true, .mayHaveTrees = true});
+    }
+    EXPECT_EQ(plan.level, 5);
+    EXPECT_FALSE(plan.trees);
+}
+
+TEST(Effort, IsPackedIntoAByteThatGivesEachPartBack) {
+    for (std::uint8_t level = 0; level <= highestEffort; ++level) {
+        for (int bits = 0; bits < 8; ++bits) {
+            const EffortPlan plan{level, 0, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+            EXPECT_EQ(levelOf(plan.packed()), level);
+            EXPECT_EQ(gentleAt(plan.packed()), plan.gentle);
+            EXPECT_EQ(treesAt(plan.packed()), plan.trees);
+            EXPECT_EQ(recoversAt(plan.packed()), plan.recovers);
+        }
+    }
+}
+
+TEST(Effort, OfLargeIslandsIsStifferContactsInsteadOfMoreSubsteps) {
+    EXPECT_FALSE(isLarge(2048));
+    EXPECT_TRUE(isLarge(2049)) << "the most that 8 substeps are allowed for";
+    EXPECT_GT(rowFrequency(4, true, true).contact, rowFrequency(4, true, false).contact);
+    EXPECT_EQ(rowFrequency(4, false, true).contact, rowFrequency(4, false, false).contact)
+        << "where something is hit nothing is stiffer";
 }
 
 TEST(Effort, KnowsTheFloorOfASoftRow) {
