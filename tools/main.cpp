@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 
 #include "tools/command.h"
 #include "tools/floats.h"
@@ -29,6 +30,14 @@ namespace {
 int badUse(const std::string& sentence) {
     std::fprintf(stderr, "huestep: %s\n", sentence.c_str());
     return static_cast<int>(Exit::BadUse);
+}
+
+/// How the program ends once all that it printed has reached where it goes. A full disk is nobody's
+/// success.
+int delivered(int status) {
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return status;
+    return badUse("the output cannot be written");
 }
 
 int runProgram(int count, char** words) {
@@ -73,7 +82,7 @@ int runProgram(int count, char** words) {
 
 int main(int count, char** words) {
     try {
-        return huestep::tools::runProgram(count, words);
+        return huestep::tools::delivered(huestep::tools::runProgram(count, words));
     } catch (const std::exception& failure) {
         return huestep::tools::badUse(failure.what());
     }
