@@ -55,6 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"chart"}, "--out is required; see huestep chart --help"},
         Misuse{{"chart", "--out", "/dev/null/charts", "--smoke"}, "--out /dev/null/charts"},
         Misuse{{"chart", "--out", "charts", "--quick", "--smoke"}, "--quick"},
+        Misuse{{"stability", "3", "--quick"}, "row 3 has no scene for --quick; leave --quick out"},
+        Misuse{{"stability", "dominoes", "joint_grid", "--quick"}, "'joint_grid' has no scene for"},
         Misuse{{"run", "pyramid", "--threads", "65"}, "--threads"},
         Misuse{{"run", "pyramid", "--simd", "mmx"}, "scalar"},
         Misuse{{"run", "pyramid", "--engine", "havok"}, "havok"},
@@ -99,6 +101,17 @@ TEST(BadInput, ASceneFileThatIsWrongIsRefusedWithItsPathInsideTheDocument) {
     EXPECT_EQ(ended.status, 2);
     EXPECT_NE(ended.err.find(path), std::string::npos) << ended.err;
     EXPECT_NE(ended.err.find("bodies[0].mass"), std::string::npos) << ended.err;
+}
+
+TEST(BadOutput, AFullDiskIsNoSuccess) {
+    const std::vector<std::string> all = {
+        "scenes",     "run small --ticks 3", "run small --ticks 3 --json", "accuracy A5", "--help",
+        "run --help", "--version",           "stability dominoes --quick"};
+    for (const std::string& words : all) {
+        Process process({"/bin/sh", "-c", huestepProgram + " " + words + " >/dev/full"});
+        EXPECT_EQ(process.wait(120.0), 2) << words;
+        EXPECT_EQ(process.err(), "huestep: the output cannot be written\n") << words;
+    }
 }
 
 TEST(BadInput, AnEmptyFolderIsNoJournal) {

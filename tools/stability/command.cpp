@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "core/solver/method.h"
 #include "tools/command.h"
@@ -104,6 +105,16 @@ class Teller {
     std::uint64_t m_reached = 0;
 };
 
+/// Rows of which nothing was run, where all were asked for.
+void printRowsLeftOut(const std::vector<StabilityVerdict>& verdicts) {
+    std::set<int> run;
+    for (const StabilityVerdict& verdict : verdicts) run.insert(verdict.row);
+    std::string list;
+    for (int row = 1; row <= stabilityRows; ++row)
+        if (!run.contains(row)) list += (list.empty() ? "" : ", ") + std::to_string(row);
+    if (!list.empty()) std::printf("rows without a scene for --quick: %s\n", list.c_str());
+}
+
 std::string nameOf(const StabilityConfiguration& configuration) {
     return isHuestep(configuration) ? configuration.method : configuration.engine;
 }
@@ -131,6 +142,8 @@ Answer runSuite(const Options& options) {
         if (!finished) break;
     }
     if (options.json) print(asJson(all, finished));
+    if (!options.json && finished && options.quick && options.words.empty())
+        printRowsLeftOut(all.front().result.verdicts);
     if (!finished) {
         std::size_t scenes = 0;
         for (const Configured& configured : all) scenes += configured.result.verdicts.size();

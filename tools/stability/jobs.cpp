@@ -135,6 +135,23 @@ class Planner {
     std::set<std::string> m_laddered;
 };
 
+/// What was asked for by number or by name must not pass unseen because nothing of it is left.
+Status checkAllHaveJobs(const StabilityOptions& options, const std::vector<Job>& jobs) {
+    const auto any = [&](auto&& of) { return std::any_of(jobs.begin(), jobs.end(), of); };
+    const auto none = [&](const std::string& whose) {
+        const bool quick = options.effort == StabilityEffort::Quick;
+        return Error{whose + " has no scene" +
+                     (quick ? " for --quick; leave --quick out" : " of this effort")};
+    };
+    for (const int row : options.rows)
+        if (!any([&](const Job& job) { return job.row == row; }))
+            return none("row " + std::to_string(row));
+    for (const std::string& scene : options.scenes)
+        if (!any([&](const Job& job) { return beginsWith(job.trial.scene, scene); }))
+            return none("'" + scene + "'");
+    return Done{};
+}
+
 }  // namespace
 
 Result<std::vector<Job>> jobsOf(const StabilityOptions& options) {
@@ -150,7 +167,10 @@ Result<std::vector<Job>> jobsOf(const StabilityOptions& options) {
     };
     for (const std::string& scene : options.scenes)
         if (!known(scene)) return Error{"no row has a scene '" + scene + "'"};
-    return Planner(options).jobs();
+    std::vector<Job> jobs = Planner(options).jobs();
+    if (const Status something = checkAllHaveJobs(options, jobs); !something)
+        return something.error();
+    return jobs;
 }
 
 }  // namespace huestep::tools::stability

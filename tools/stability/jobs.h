@@ -26,7 +26,8 @@ struct Job {
 inline constexpr int farRow = 27;
 inline constexpr int ladderRow = 28;
 
-/// The jobs of the options' rows, by row. Fails for a number that is no row.
+/// The jobs of the options' rows, by row. Fails for a number that is no row, a scene that no row
+/// has, and where the effort leaves nothing of a row or scene that is named.
 Result<std::vector<Job>> jobsOf(const StabilityOptions& options);
 
 /// What a ladder is made of.
