@@ -36,7 +36,7 @@ constexpr float rowOfLight = 2.5f;
 constexpr float treeMargin = 4.0f;  // below the need, before trees are left to sweeps again
 // From which on joints are solved with their tree. Ragdolls of 10 joints are left to sweeps, which
 // take a quarter of the time and hold them well enough.
-constexpr float treeRatio = 10.0f;
+constexpr float treeRatio = 20.0f;
 constexpr std::uint32_t manyJoints = 24;
 // A pendulum is 30 times, a double pendulum 10 times as exact.
 constexpr std::uint32_t fewJoints = 2;

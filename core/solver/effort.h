@@ -38,7 +38,7 @@ float allowedError(float need, float reachA, float reachB);
 
 /// Between which levels an island may be.
 struct EffortRange {
-    std::uint8_t least = standardEffort;  ///< `restingEffort` of one at rest without joints
+    std::uint8_t least = standardEffort;  ///< `restingEffort`, `hangingEffort` of one at rest
     std::uint8_t most = highestEffort;    ///< `affordableEffort`; what needs more stays there
     bool gentle = false;                  ///< whether nothing in it hits anything
     bool jointed = false;                 ///< whether it has joints

@@ -18,11 +18,11 @@ std::uint32_t find(std::vector<std::uint32_t>& set, std::uint32_t i) {
     return i;
 }
 
+}  // namespace
+
 bool isSwept(const JointRow& row) {
     return !row.direct || hasParts(row);
 }
-
-}  // namespace
 
 /// Joints by id grow a forest; those that close a loop are left out. Where more than one in eight
 /// does, what hangs together is a net and no tree, and all of it is left to the sweeps: those would

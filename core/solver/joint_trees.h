@@ -31,6 +31,10 @@ namespace huestep {
 
 class Rows;
 
+/// Whether a joint whose row is made leaves anything to sweeps: springs, motors, limits, or all of
+/// it.
+bool isSwept(const JointRow& row);
+
 /// A symmetric 3 × 3 matrix over (x, y, angle): how a body gives way to an impulse.
 struct Mobility {
     double xx = 0, xy = 0, xw = 0, yy = 0, yw = 0, ww = 0;

@@ -11,6 +11,7 @@ namespace huestep {
 inline constexpr std::uint8_t highestEffort = 5;
 inline constexpr std::uint8_t standardEffort = 2;  ///< with which bodies start
 inline constexpr std::uint8_t restingEffort = 1;
+inline constexpr std::uint8_t hangingEffort = 0;
 constexpr std::uint32_t substepsOf(std::uint8_t effort) {
     return 1u << effort;
 }

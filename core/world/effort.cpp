@@ -89,8 +89,9 @@ class BatchEffort {
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
     [[nodiscard]] float speedOf(std::uint32_t body) const;
     [[nodiscard]] bool wantsTree(std::uint32_t body) const;
-    [[nodiscard]] EffortRange rangeOf(std::uint32_t island, float fastest, bool hit) const;
+    [[nodiscard]] EffortRange rangeOf(std::uint32_t island, const IslandEffort& now) const;
     [[nodiscard]] bool hitsAnything() const;
+    void gatherSweeps();
     void gatherHits();
     [[nodiscard]] bool stays(const RowStrain& strain);
     void gather(const std::optional<RowStrain>& strain);
@@ -203,7 +204,9 @@ void BatchEffort::gather(const std::optional<RowStrain>& strain) {
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            island = {strain.value_or(RowStrain{}), calmSteps, 0.0f, false, false, false, {}};
+            island = {};
+            island.strain = strain.value_or(RowStrain{});
+            island.calm = calmSteps;
         }
         const BodyMotion& motion = m_world.state.motions[body];
         // A body that was lifted to the batch's level by others has not been calm there.
@@ -213,6 +216,7 @@ void BatchEffort::gather(const std::optional<RowStrain>& strain) {
         island.fastest = maxOf(island.fastest, speedOf(body));
         island.keepsTrees = island.keepsTrees || wantsTree(body);
     });
+    gatherSweeps();
     if (strain) return;
     overRows([&](BodyPlace a, BodyPlace b, const RowStrain& ofRow) {
         IslandEffort& island = islandOf(a, b);
@@ -220,24 +224,40 @@ void BatchEffort::gather(const std::optional<RowStrain>& strain) {
     });
 }
 
+/// Of islands whose joints are solved with their trees: whether they leave sweeps anything.
+void BatchEffort::gatherSweeps() {
+    if (!m_batch.trees) return;
+    for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
+        const JointRow& row = m_rows.joints[i];
+        if (isSwept(row)) islandOf(row.bodyA, row.bodyB).sweeps = true;
+    }
+}
+
 bool BatchEffort::wantsTree(std::uint32_t body) const {
     const std::vector<std::uint8_t>& wants = m_world.accelerators.shapes.wantsTree;
     return !wants.empty() && wants[body] != 0;
 }
 
-EffortRange BatchEffort::rangeOf(std::uint32_t island, float fastest, bool hit) const {
+EffortRange BatchEffort::rangeOf(std::uint32_t island, const IslandEffort& now) const {
     const bool jointed = m_plan.jointsOf[island] > 0;
-    const float still = m_batch.effort == restingEffort ? unrestSpeed : restSpeed;
-    return {.least = !jointed && fastest < still ? restingEffort : standardEffort,
+    const float still = m_batch.effort < standardEffort ? unrestSpeed : restSpeed;
+    std::uint8_t least = standardEffort;
+    if (now.fastest < still && !jointed) least = restingEffort;
+    // What hangs at rest on joints that are solved at once needs no substeps at all.
+    const bool hangs = jointed && m_batch.trees && !now.sweeps &&
+                       m_plan.jointsOf[island] == m_plan.constraintsOf[island];
+    if (now.fastest < still && hangs) least = hangingEffort;
+    return {.least = least,
             .most = affordableEffort(m_plan.constraintsOf[island]),
-            .gentle = !hit && (m_batch.gentle || fastest < gentleSpeed),
+            .gentle = !now.hit && (m_batch.gentle || now.fastest < gentleSpeed),
             .jointed = jointed,
-            .mayHaveTrees = mayHaveTrees(m_plan, island)};
+            .mayHaveTrees = mayHaveTrees(m_plan, island),
+            .keepsTrees = now.keepsTrees};
 }
 
 /// Whether a giant that is strained so stays as it is, so that nothing is to be written.
 bool BatchEffort::stays(const RowStrain& strain) {
-    if (!m_batch.giant || !m_batch.still || m_batch.recovers) return false;
+    if (!m_batch.giant || !m_batch.still || m_batch.recovers || m_batch.trees) return false;
     const float enough = m_batch.gentle ? unrestSpeed : gentleSpeed;  // more tells nothing
     float fastest = 0.0f;
     std::uint32_t island = none;
@@ -249,7 +269,10 @@ bool BatchEffort::stays(const RowStrain& strain) {
         fastest = maxOf(fastest, speedOf(body));
     }
     const EffortPlan now{m_batch.effort, 0, m_batch.gentle, m_batch.trees};
-    const EffortRange range = rangeOf(island, fastest, m_hits);
+    IslandEffort seen;
+    seen.fastest = fastest;
+    seen.hit = m_hits;
+    const EffortRange range = rangeOf(island, seen);
     const EffortPlan next = planEffort(now, byCure(strain, now.trees, range.mayHaveTrees), range);
     m_world.islandEfforts[island].strain = strain;
     return next.packed() == now.packed() && next.calm == 0 && m_batch.ramp == 0;
@@ -276,8 +299,7 @@ bool BatchEffort::decide() {
     overBodies([&](std::uint32_t body) {
         IslandEffort& island = m_world.islandEfforts[m_plan.islandOf[body]];
         if (m_plan.islandOf[body] == body) {
-            EffortRange range = rangeOf(body, island.fastest, island.hit);
-            range.keepsTrees = island.keepsTrees;
+            const EffortRange range = rangeOf(body, island);
             const bool trees = now.trees && m_plan.jointsOf[body] > 0;
             RowStrain load = island.strain;
             // What a blow asks for is over before it could be given.

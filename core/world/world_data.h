@@ -124,6 +124,7 @@ struct IslandEffort {
     float fastest = 0;        // m/s, of any of its points
     bool overlaps = false;    // by more than is allowed; known where it recovers
     bool hit = false;         // a contact of it met hard
+    bool sweeps = false;      // a joint of it leaves anything to sweeps; known where trees are
     bool keepsTrees = false;  // joints of it are always solved at once
     EffortPlan next;
 };

@@ -106,6 +106,23 @@ TEST(WorldEffort, ATighterNeedOfTheSceneTakesMoreSubstepsAndIsMet) {
     EXPECT_LT(penetrationOf(tight), 0.0005);
 }
 
+TEST(WorldEffort, OfAChainAtRestIsOneSubstepAndOfOneThatSwingsTheStandard) {
+    World world = worldOf("chain:ratio=100");
+    run(world, 120);
+    EXPECT_EQ(world.stepLayout().islands.at(0).substeps, 1u);
+    EXPECT_TRUE(world.stepLayout().islands.at(0).trees);
+    const double error =
+        measure(world.info(), world.bodies(), world.shapes(), world.joints(), world.motions())
+            .maxJointError;
+    EXPECT_LT(error, 1e-5);
+    const BodyMotion ball = world.motions().back();
+    const std::vector<Command> push{
+        {0, 1, ApplyImpulse{world.bodies().back().id, {2000.0f, 0.0f}, ball.position}}};
+    world.step(push);
+    run(world, 2);
+    EXPECT_EQ(world.stepLayout().islands.at(0).substeps, substepsOf(standardEffort));
+}
+
 TEST(WorldEffort, SaysWhichIslandIsTooStiffForItsBudget) {
     Scene scene = sceneOf({ground()});
     scene.sleep = false;
