@@ -136,4 +136,12 @@ HUESTEP_INLINE F minLanes(const F& a, const F& b) {
     return selectLanes(a < b, a, b);
 }
 
+/// What `to` is more than `from`: nothing where they are the same, and be they infinite, whose
+/// difference is no number. A pass that does not concern a body must not be seen in it, for whether
+/// the pass is made depends on what else is in the batch.
+template <int W>
+HUESTEP_INLINE LaneF<W> changeOf(const LaneF<W>& from, const LaneF<W>& to) {
+    return selectLanes(to == from, LaneF<W>{}, to - from);
+}
+
 }  // namespace huestep

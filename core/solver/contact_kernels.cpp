@@ -246,10 +246,10 @@ HUESTEP_INLINE void restituteLanes(SolverBody* bodies, ContactBlock& block, int 
         mass = selectLanes(e > zero, mass, zero);
         const LaneF<W> old = loadLanes<W>(p.normalImpulse + lane);
         const LaneF<W> sum = maxLanes(old - mass * (vn + e * approach), zero);
-        // Where the law does not apply the impulse stays as it is, to the bit.
+        // Where the law does not apply the impulse stays as it is, to the bit, and does nothing.
         const LaneF<W> next = selectLanes(mass > zero, sum, old);
         storeLanes<W>(p.normalImpulse + lane, next);
-        const LaneF<W> impulse = next - old;
+        const LaneF<W> impulse = changeOf<W>(old, next);
         applyImpulse<W>(pair, r, impulse * pair.nx, impulse * pair.ny);
     }
     pair.store(bodies, block, lane);

@@ -26,6 +26,15 @@ HUESTEP_INLINE LaneF<W> separationNow(const Pair<W>& pair, const Anchors<W>& r,
     return (x * pair.nx + y * pair.ny) + start;
 }
 
+/// A bound of an impulse: `share` of the load, and of a row without a share 0 whatever the load.
+/// An infinite one would make it no number, in a batch where others have a share; alone the row
+/// would not be gone through.
+template <int W>
+HUESTEP_INLINE LaneF<W> boundOf(const LaneF<W>& share, const LaneF<W>& load) {
+    const LaneF<W> zero = splat<W>(0.0f);
+    return selectLanes(share > zero, share * load, zero);
+}
+
 /// Coulomb's cone, a row a point, with the normal impulse just found.
 template <int W>
 HUESTEP_INLINE void solveFriction(Pair<W>& pair, ContactBlock& block, int lane,
@@ -40,7 +49,7 @@ HUESTEP_INLINE void solveFriction(Pair<W>& pair, ContactBlock& block, int lane,
         relativeVelocity<W>(pair, r, x, y);
         const LaneF<W> vt = (x * pair.ny - y * pair.nx) + surface;
         const LaneF<W> old = loadLanes<W>(p.tangentImpulse + lane);
-        const LaneF<W> most = friction * loadLanes<W>(p.normalImpulse + lane);
+        const LaneF<W> most = boundOf<W>(friction, loadLanes<W>(p.normalImpulse + lane));
         const LaneF<W> free = old - loadLanes<W>(p.tangentMass + lane) * vt;
         const LaneF<W> sum = maxLanes(zero - most, minLanes(free, most));
         const LaneF<W> impulse = sum - old;
@@ -54,7 +63,7 @@ HUESTEP_INLINE void solveRolling(Pair<W>& pair, ContactBlock& block, int lane) {
     const LaneF<W> zero = splat<W>(0.0f);
     const LaneF<W> load = loadLanes<W>(block.points[0].normalImpulse + lane) +
                           loadLanes<W>(block.points[1].normalImpulse + lane);
-    const LaneF<W> most = loadLanes<W>(block.rollingResistance + lane) * load;
+    const LaneF<W> most = boundOf<W>(loadLanes<W>(block.rollingResistance + lane), load);
     const LaneF<W> old = loadLanes<W>(block.rollingImpulse + lane);
     const LaneF<W> free = old - loadLanes<W>(block.rollingMass + lane) * (pair.b.w - pair.a.w);
     const LaneF<W> sum = maxLanes(zero - most, minLanes(free, most));

@@ -140,7 +140,7 @@ void JacobiSweeper::keepChanges(const ConstraintBodies* places, std::uint32_t la
                                 std::uint32_t slot) {
     const auto keep = [&](BodyPlace place, const SolverBody& copy, Change& change) {
         const SolverBody& body = m_rows.bodies[static_cast<std::size_t>(readPlace(place))];
-        storeLanes<4>(&change.vx, loadLanes<4>(&copy.vx) - loadLanes<4>(&body.vx));
+        storeLanes<4>(&change.vx, changeOf<4>(loadLanes<4>(&body.vx), loadLanes<4>(&copy.vx)));
     };
     Change* changes = m_rows.memory.changes.data() + slot;
     for (std::uint32_t i = 0; i < lanes; ++i) {
@@ -162,8 +162,8 @@ void JacobiSweeper::sweepJoint(JointRow& row, const Sweep& sweep, const JointPas
     sweep.joint(m_copies.data(), row, pass);
     row.bodyA = places.a;
     row.bodyB = places.b;
-    storeLanes<4>(&changes[0].vx, loadLanes<4>(&m_copies[0].vx) - loadLanes<4>(&a.vx));
-    storeLanes<4>(&changes[1].vx, loadLanes<4>(&m_copies[1].vx) - loadLanes<4>(&b.vx));
+    storeLanes<4>(&changes[0].vx, changeOf<4>(loadLanes<4>(&a.vx), loadLanes<4>(&m_copies[0].vx)));
+    storeLanes<4>(&changes[1].vx, changeOf<4>(loadLanes<4>(&b.vx), loadLanes<4>(&m_copies[1].vx)));
 }
 
 /// `f(place, sum)` for this worker's bodies, once all changes are made. The order of a sum is that

@@ -47,7 +47,7 @@ void ColourSweeper::sweepHub(const ColourRun& run, ContactKernel kernel, const C
         kernel(bodies.data(), &block, lanes, pass);
         std::array<LaneF<4>, sumLanes> sum{};
         for (std::uint32_t i = 0; i < lanes; ++i) {
-            sum[i % sumLanes] += loadLanes<4>(&copies[i].vx) - before;
+            sum[i % sumLanes] += changeOf<4>(before, loadLanes<4>(&copies[i].vx));
         }
         const LaneF<4> change =
             ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
