@@ -99,6 +99,18 @@ var huestepCharts = (function () {
     return all.join('<br>');
   }
 
+  /**
+   * Whether other programs ran beside the measurements: then work on one thread, which has nothing
+   * to wait for, took longer by the clock than the processor spent on it. @param {Row} doc
+   */
+  function busy(doc) {
+    var shares = doc.sizes.concat(doc.scenes)
+      .filter(function (/** @type {Row} */ row) { return row.threads === 1 && row.cpu_us_median > 0; })
+      .map(function (/** @type {Row} */ row) { return row.wall_us_median / row.cpu_us_median; })
+      .sort(function (/** @type {number} */ a, /** @type {number} */ b) { return a - b; });
+    return shares.length > 0 && shares[Math.floor(shares.length / 2)] > 1.2;
+  }
+
   // ---- what all charts have
 
   /** @param {Row} doc @param {string} method @param {Look} look */
@@ -157,6 +169,29 @@ var huestepCharts = (function () {
       to = Math.ceil(to);
     }
     return { min: Math.pow(10, from), max: Math.pow(10, to) };
+  }
+
+  /**
+   * An axis of ratios: of powers of two, or of ten where these are so many that they say nothing;
+   * the 1 is on it. @param {Look} look @param {number[]} values @returns {Option}
+   */
+  function ratios(look, values) {
+    var good = values.filter(function (v) { return v > 0 && isFinite(v); }).concat(1);
+    var low = Math.min.apply(null, good);
+    var high = Math.max.apply(null, good);
+    var wide = high / low > 64;
+    var span = wide
+      ? decades(good)
+      : { min: Math.pow(2, Math.floor(Math.log(low / 1.06) / Math.LN2)), max: Math.pow(2, Math.ceil(Math.log(high * 1.06) / Math.LN2)) };
+    return { type: 'log', logBase: wide ? 10 : 2, min: span.min, max: span.max, axisLabel: { color: inks(look).faint, formatter: wide ? decade : short } };
+  }
+
+  /** A label that can be read before lines and marks. @param {Look} look @param {Option} more @returns {Option} */
+  function legible(look, more) {
+    /** @type {Option} */
+    var all = { distance: 8, textBorderColor: inks(look).paper, textBorderWidth: 3 };
+    for (var key in more) all[key] = more[key];
+    return all;
   }
 
   /** A third of the smallest error that is not zero, if one is. @param {number[]} errors */
@@ -307,10 +342,10 @@ var huestepCharts = (function () {
             box: p.box,
             symbolSize: style.size + (ring ? (style.product ? 10 : 6) : 0),
             itemStyle: { color: style.color, borderColor: ring ? ink.text : style.color, borderWidth: ring ? 2 : 0 },
-            label: {
+            label: legible(look, {
               show: style.product, position: p.row.substeps === 0 ? 'bottom' : 'top', fontSize: look.narrow ? 9 : 11, color: style.color,
               formatter: p.row.substeps === 0 ? 'planned' : 'n = ' + p.row.substeps,
-            },
+            }),
           };
         }),
       };
@@ -328,7 +363,7 @@ var huestepCharts = (function () {
       data: best.map(function (p) { return [p.x, p.y]; }),
       markLine: {
         silent: true, symbol: 'none', precision: -1, lineStyle: { color: ink.bad, type: 'dotted', width: 1.5 },
-        label: { color: ink.bad, fontSize: 11, position: 'insideEndTop' },
+        label: legible(look, { distance: 4, color: ink.bad, fontSize: 11, position: 'insideEndTop' }),
         data: floors.map(function (floor) { return { xAxis: floor.error, label: { formatter: floor.label } }; }),
       },
     };
@@ -444,14 +479,16 @@ var huestepCharts = (function () {
         };
       });
       /** @type {any[]} */
-      var marks = [{ yAxis: 1, label: { formatter: look.narrow ? '' : 'colours, 1 thread', position: 'insideStartBottom' } }];
-      if (crossing && crossing.from_constraints)
+      var marks = [{ yAxis: 1, label: { formatter: look.narrow ? '' : 'colours, 1 thread', position: 'insideStartTop' } }];
+      if (crossing && crossing.from_constraints && !busy(doc))
         marks.push({ xAxis: crossing.from_constraints, lineStyle: { color: colours[1], type: 'dotted' }, label: { color: colours[1], formatter: 'pays from ' + crossing.from_constraints, position: 'insideEndTop' } });
-      /** @type {any} */ (series[0]).markLine = { silent: true, symbol: 'none', label: { color: ink.text, fontSize: 11 }, lineStyle: { color: ink.text, type: 'solid', width: 1 }, data: marks };
+      /** @type {any} */ (series[0]).markLine = { silent: true, symbol: 'none', label: legible(look, { distance: 6, color: ink.text, fontSize: 11 }), lineStyle: { color: ink.text, type: 'solid', width: 1 }, data: marks };
       var spanX = decades(rows.map(function (/** @type {Row} */ row) { return row.constraints; }));
       var more = zoom(look, 'xy');
       more.xAxis = axis(look, 'constraints in the one island', { type: 'log', nameGap: 28, min: spanX.min, max: spanX.max, axisLabel: { color: ink.faint, formatter: decade } });
-      more.yAxis = axis(look, 'time, × colours on 1 thread  →  slower', { type: 'log', logBase: 2, nameGap: look.narrow ? 34 : 48, axisLabel: { color: ink.faint, formatter: short } });
+      var spanY = ratios(look, rows.map(function (/** @type {Row} */ row) { return row.wall_us_min / least[row.scene]; }));
+      spanY.nameGap = look.narrow ? 34 : 48;
+      more.yAxis = axis(look, 'time, × colours on 1 thread  →  slower', spanY);
       more.series = series;
       more.legend = legendBelow(look);
       more.grid = look.narrow
@@ -525,7 +562,9 @@ var huestepCharts = (function () {
       };
     });
     /** @type {any} */ (series[0]).markLine = { silent: true, symbol: 'none', label: { show: false }, lineStyle: { color: ink.text, type: 'solid', width: 1 }, data: [{ xAxis: 1 }] };
-    var more = across(look, names, '←  faster     time, × colours on 1 thread     slower  →', { type: 'log', logBase: 2, nameGap: 28, axisLabel: { color: ink.faint, formatter: short } }, series);
+    var span = ratios(look, doc.scenes.map(function (/** @type {Row} */ row) { return row.wall_us_min / least[row.scene]; }));
+    span.nameGap = 28;
+    var more = across(look, names, '←  faster     time, × colours on 1 thread     slower  →', span, series);
     return [{
       name: 'scenes', section: 'scenes', choice: 'Scenes', title: 'What colours and threads do to each scene', caption: '', failures: [],
       height: (look.narrow ? 160 : 130) + 34 * names.length, option: option(look, 'What colours and threads do to each scene', [], more),
@@ -564,10 +603,14 @@ var huestepCharts = (function () {
         option: option(look, 'Share of two threads’ time in which they wait for each other', [], across(look, names, 'share of the two threads’ time', percent, waits)) }];
   }
 
-  /** Whether a row of prices ended otherwise than in another run, or than on one thread. @param {Row} doc @param {Row} row @returns {boolean} */
+  /**
+   * Whether a row of prices ended otherwise than in another run, or than on one thread. Of what
+   * failed nobody wants to know. @param {Row} doc @param {Row} row @returns {boolean}
+   */
   function unsteady(doc, row) {
+    if (row.failure !== '') return false;
     return row.different_hashes > 1 || doc.prices.some(function (/** @type {Row} */ other) {
-      return other.scene === row.scene && other.method === row.method && other.threads === 1 && other.hash !== row.hash;
+      return other.scene === row.scene && other.method === row.method && other.threads === 1 && other.failure === '' && other.hash !== row.hash;
     });
   }
 
@@ -593,7 +636,7 @@ var huestepCharts = (function () {
             return {
               value: [Math.max(errorOf(row), least), row.wall_us_min], symbolSize: style.size + 4,
               itemStyle: row.threads === 1 ? { color: ink.paper, borderColor: style.color, borderWidth: 2 } : { color: style.color },
-              label: { show: true, position: 'right', fontSize: 10, color: style.color, formatter: String(row.threads) + (unsteady(doc, row) ? ' ≠' : '') },
+              label: legible(look, { distance: 5, show: true, position: 'right', fontSize: 10, color: style.color, formatter: String(row.threads) + (unsteady(doc, row) ? ' ≠' : '') }),
               box: box(row, [(joints ? 'joint error ' : 'penetration ') + short(errorOf(row)) + ' m at the end']),
             };
           }),
@@ -652,7 +695,9 @@ var huestepCharts = (function () {
     series.push(dots('planned, need met', { symbol: 'diamond', size: 17, z: 5, item: { color: colours[0] }, ink: ink.paper }, function (row) { return row.planned && row.met; }));
     series.push(dots('planned, need missed', { symbol: 'diamond', size: 17, z: 5, item: { color: ink.bad }, ink: ink.paper }, function (row) { return row.planned && !row.met; }));
     /** @type {any} */ (series[0]).markLine = { silent: true, symbol: 'none', label: { show: false }, lineStyle: { color: ink.text, width: 1, type: 'solid' }, data: [{ xAxis: 1 }] };
-    var more = across(look, names, '←  faster     CPU time, × n = ' + doc.standard_substeps + '     slower  →', { type: 'log', logBase: 2, nameGap: 28, axisLabel: { color: ink.faint, formatter: short } }, series);
+    var span = ratios(look, doc.effort.map(function (/** @type {Row} */ row) { return row.cpu_us_min / standard[row.scene]; }));
+    span.nameGap = 28;
+    var more = across(look, names, '←  faster     CPU time, × n = ' + doc.standard_substeps + '     slower  →', span, series);
     return [{
       name: 'effort', section: 'effort', choice: 'Effort', title: 'Effort by need', caption: '', failures: [], height: (look.narrow ? 160 : 130) + 34 * names.length,
       option: option(look, 'Time of each number of substeps, and whether the need is met', [], more),
@@ -747,6 +792,6 @@ var huestepCharts = (function () {
 
   return {
     charts: charts, pictures: pictures, stabilityRows: stabilityRows, methodsIn: methodsIn,
-    groups: groups, unsteady: unsteady, short: short, time: time, inUnit: inUnit, who: who,
+    groups: groups, unsteady: unsteady, busy: busy, short: short, time: time, inUnit: inUnit, who: who,
   };
 })();

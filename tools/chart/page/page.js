@@ -133,7 +133,7 @@
 
   /** @param {string[]} head @param {(Node | string)[][]} rows */
   function table(head, rows) {
-    return make(
+    const wide = make(
       'div',
       { class: 'wide' },
       make(
@@ -143,10 +143,27 @@
         make('tbody', {}, ...rows.map((row) => make('tr', {}, ...row.map((cell) => make('td', {}, cell))))),
       ),
     );
+    // A fade says that there is more beyond the edge.
+    const frame = make('div', { class: 'frame' }, wide);
+    const look = () => frame.classList.toggle('more', wide.scrollLeft + wide.clientWidth < wide.scrollWidth - 2);
+    wide.addEventListener('scroll', look, { passive: true });
+    new ResizeObserver(look).observe(wide);
+    return frame;
   }
 
-  /** What was measured in a cell. @param {Row} row @param {string} method @param {Row} cell */
-  function showVerdicts(row, method, cell) {
+  /**
+   * What was measured in a cell, in a line of the table below that of the cell: as wide as is seen
+   * of the table, however far it is scrolled. The cell pressed again takes it away.
+   * @param {HTMLElement} button @param {Row} row @param {string} method @param {Row} cell
+   */
+  function showVerdicts(button, row, method, cell) {
+    const line = /** @type {HTMLTableRowElement} */ (button.closest('tr'));
+    const shown = button.getAttribute('aria-expanded') === 'true';
+    const body = /** @type {HTMLElement} */ (line.parentElement);
+    body.querySelector('.detail')?.remove();
+    for (const open of body.querySelectorAll('[aria-expanded="true"]')) open.setAttribute('aria-expanded', 'false');
+    if (shown) return;
+    button.setAttribute('aria-expanded', 'true');
     const said = cell.verdicts.map((/** @type {Row} */ v) => {
       const value = v.value === null ? 'no number' : short(v.value) + inUnit(v.unit);
       const margin = v.limit > 0 && v.value !== null ? `, ${short(v.limit / v.value)} times within` : '';
@@ -155,10 +172,10 @@
       const judged = v.judged ? '' : ' (reported only)';
       return make('li', {}, `${v.pass ? 'passes' : 'fails'}: ${v.scene}: ${v.what || 'value'} ${value}, ${limit}${frontier}${judged}. ${v.why || ''}`);
     });
-    byId('stability-detail').replaceChildren(
-      make('h3', {}, `${row.row} ${row.name}: ${method}`),
-      make('ul', {}, ...said),
-    );
+    const text = make('div', { 'aria-live': 'polite' }, make('h3', {}, `${row.row} ${row.name}: ${method}`), make('ul', {}, ...said));
+    text.style.width = `${/** @type {HTMLElement} */ (line.closest('.wide')).clientWidth}px`;
+    line.after(make('tr', { class: 'detail' }, make('td', { colspan: String(line.cells.length) }, text)));
+    text.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   }
 
   function stabilityTable() {
@@ -167,13 +184,15 @@
       byId('stability-table').replaceChildren(make('p', { class: 'caption' }, 'The suite was not run for this page.'));
       return;
     }
+    byId('frontier-note').hidden = !rows.some((row) => Object.values(row.cells).some((cell) => cell.frontier >= 0));
     const methods = huestepCharts.methodsIn(doc, doc.stability);
     const cellOf = (/** @type {any} */ row, /** @type {string} */ method) => {
       const cell = row.cells[method];
       if (!cell) return '';
       const frontier = cell.frontier > 0 ? `n ≥ ${cell.frontier}` : cell.frontier === 0 ? 'at no n' : '';
       const button = make('button', { type: 'button', class: `verdict ${!cell.judged ? '' : cell.pass ? 'pass' : 'fail'}` }, !cell.judged ? 'not judged' : cell.pass ? 'holds' : 'fails', make('small', {}, frontier));
-      button.addEventListener('click', () => showVerdicts(row, method, cell));
+      button.setAttribute('aria-expanded', 'false');
+      button.addEventListener('click', () => showVerdicts(button, row, method, cell));
       return button;
     };
     const totals = methods.map((method) => {
@@ -263,7 +282,8 @@
           (best ? `; the best of the others, ${best}, ${count(best)}.` : '.'),
       );
     }
-    for (const c of doc.crossings.filter((/** @type {Row} */ r) => r.question === 'a second thread pays')) {
+    // Of a machine that did other things as well the clock tells nothing about a second thread.
+    for (const c of doc.crossings.filter((/** @type {Row} */ r) => r.question === 'a second thread pays' && !huestepCharts.busy(doc))) {
       const what = c.family === 'net' ? 'a net of joints' : `one ${c.family}`;
       said.push(
         c.from_constraints === null
@@ -275,8 +295,13 @@
     if (doc.scenes.length > 0)
       said.push(most === 0 ? 'In none of the scenes here is a constraint left to one thread because it finds no colour.' : `At most ${short(100 * most)} % of the constraints of a scene here are left to one thread because they find no colour.`);
     const unsteady = [...new Set(doc.prices.filter((/** @type {Row} */ r) => huestepCharts.unsteady(doc, r)).map((/** @type {Row} */ r) => r.method))];
-    if (unsteady.length > 0)
-      said.push(`Different from run to run, or on two threads from one, and therefore no choice for lockstep: ${unsteady.join(', ')}.`);
+    const mayBe = (/** @type {string} */ name) => doc.methods.some((/** @type {Row} */ m) => m.name === name && !m.deterministic);
+    const known = unsteady.filter(mayBe);
+    if (known.length > 0)
+      said.push(`Different from run to run, or on two threads from one, and therefore no choice for lockstep: ${known.join(', ')}.`);
+    const wrong = unsteady.filter((name) => !mayBe(name));
+    if (wrong.length > 0)
+      said.push(`Different from run to run, or on two threads from one, which must not be and is a fault of this build: ${wrong.join(', ')}.`);
     const planned = doc.effort_answers.filter((/** @type {Row} */ a) => a.least_fixed_substeps !== null);
     if (planned.length > 0) {
       const met = planned.filter((/** @type {Row} */ a) => a.planned_met);
@@ -301,6 +326,7 @@
     const quick = doc.extent === 'full' ? '' : ` --${doc.extent}`;
     byId('origin').textContent = `${doc.date} · ${doc.machine} · ${doc.compiler} · commit ${doc.commit}` +
       (doc.extent === 'full' ? '' : ` · ${doc.extent} run: fewer and smaller scenes`);
+    byId('busy').hidden = !huestepCharts.busy(doc);
     byId('terms').replaceChildren(
       make('p', {}, `Fixed work, no sleeping. Everything that is compared with each other ran in turn, A B C, A B C, ${doc.repeats} times, so that each met the same weather; the least of these times is shown, quartiles with the point. CPU time is what the processor spent on the work, whatever else the machine did; the clock is used where two threads are there to finish earlier. A hash of all motions was taken after every run.`),
       list([
