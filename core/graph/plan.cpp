@@ -99,7 +99,8 @@ void Builder::packBatches() {
         const std::uint8_t ramp = planned ? rampOfIsland[body] : std::uint8_t{0};
         const bool trees =
             demand.trees || (planned && mayHaveTrees(plan, body) && treesAt(effortOf[body]));
-        const bool recovers = !trees && size <= mostRecovering && recoversAt(effortOf[body]);
+        const bool recovers = !(trees && plan.jointsOf[body] > 0) && size <= mostRecovering &&
+                              recoversAt(effortOf[body]);
         const std::uint32_t kind = (gentle ? 1u : 0u) + (trees ? 2u : 0u) + (recovers ? 4u : 0u) +
                                    (isLarge(size) ? 8u : 0u);
         std::uint32_t& open = openOf[(ramp * 16u + kind) * levels + effort];
