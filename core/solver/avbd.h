@@ -8,7 +8,7 @@
 /// substeps are the iterations.
 ///
 /// The paper's penalties k grow from step to step, which would be history beside the state. Here k
-/// follows from the masses and the multiplier alone, k = max(m/Δt², |λ|/1 mm), and multipliers
+/// follows from the masses and the multiplier alone, k = max(m/Δt², |λ|/5 mm), and multipliers
 /// start from the impulses that the state holds; so does the first guess of the poses. Errors that
 /// were there when the step began are no business of the iterations: one more over the bodies,
 /// after velocities are known, takes them out (post-stabilisation). Restitution is that of all

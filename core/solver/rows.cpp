@@ -286,7 +286,8 @@ void Rows::check(std::span<const BodyMotion> motions, std::span<const Bounds> bo
 
 std::uint64_t Rows::bytes() const {
     const auto of = [](const auto& array) { return array.size() * sizeof(array[0]); };
-    return of(bodies) + of(poses) + of(sources) + of(blocks) + of(joints) + of(revolutes);
+    return of(bodies) + of(poses) + of(pushed) + of(sources) + of(blocks) + of(blockFeatures) +
+           of(joints) + of(revolutes) + of(memory.changes) + of(memory.shares) + of(memory.locks);
 }
 
 bool Rows::allKept(std::uint32_t block) const {

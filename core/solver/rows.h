@@ -132,7 +132,8 @@ class Rows {
         }
     }
 
-    /// Bytes of all rows and bodies that a step goes over.
+    /// Bytes of all rows and bodies that a step goes over and of what its method keeps beside them,
+    /// but for what joint trees make of theirs.
     [[nodiscard]] std::uint64_t bytes() const;
 
  private:

@@ -53,6 +53,7 @@ void Carried::become(const Carried& other, bool related) {
         acc.plan.batches = its.plan.batches;
     }
     acc.linksStale = its.linksStale;
+    acc.planSharesAll = its.planSharesAll;
     acc.rowsHold = its.rowsHold;
     const std::size_t knownBlocks = std::min(acc.rowStamps.size(), its.rowStamps.size());
     acc.rows.copyRows(its.rows, [&](std::uint32_t block) {
@@ -96,6 +97,7 @@ void World::restore(const Checkpoint& from) {
     if (m_data->contactsInState || !related) m_data->gathered = {};
     m_data->forces.clear();
     m_data->anyAsleep = false;
+    m_data->islandEfforts.clear();  // of a step that this world has not taken
     if (related) return;
     m_data->stamp = std::max(m_data->stamp, from.m_data->stamp);
     m_data->lineage = std::make_shared<const int>(0);

@@ -1,7 +1,6 @@
 #include "core/world/from_definition.h"
 
 #include "core/solver/effort.h"
-
 #include "core/state/validate.h"
 
 namespace huestep {

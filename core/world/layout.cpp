@@ -67,9 +67,10 @@ StepLayout World::stepLayout() const {
             view.batchConstraints = batch.constraints;
             view.substeps = batch.substeps;
             view.gentle = batch.gentle;
-            if (m_data->state.info().planned() && body < m_data->islandEfforts.size()) {
+            if (!m_data->state.info().planned()) continue;
+            view.trees = batch.trees && plan.jointsOf[body] > 0;
+            if (body < m_data->islandEfforts.size()) {
                 const RowStrain& strain = m_data->islandEfforts[body].strain;
-                view.trees = batch.trees && plan.jointsOf[body] > 0;
                 view.strain = maxOf(strain.contacts, maxOf(strain.swept, strain.direct));
                 view.strainedJoint = maxOf(strain.swept, strain.direct) > strain.contacts;
             }
@@ -90,7 +91,7 @@ StepLayout World::stepLayout() const {
     });
     layout.islands = std::move(all.views);
     layout.freeBodies = static_cast<std::uint32_t>(plan.freeBodies.size());
-    layout.batchConstraints = m_data->planLimits.batchSize;
+    layout.batchConstraints = m_data->limitsOf(acc.planSharesAll).batchSize;
     layout.bytesTouched =
         acc.rows.bytes() + bodies * (sizeof(BodyMotion) + sizeof(BodyInfo)) +
         acc.tight.size() * (sizeof(Bounds) + sizeof(Vec2) + sizeof(Hull) + sizeof(Bounds)) +

@@ -25,10 +25,10 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     applyCommands(commands);  // state, commands → bodies, shapes, joints
     timer.done(Stage::Commands);
 
-    if (with.shareAll)
-        planLimits = {
-            .batchSize = 0, .hubDegree = planLimits.hubDegree, .sharedFrom = 1, .parallelFrom = 0};
-    const bool small = state.shapes.size() + state.joints.size() < planLimits.parallelFrom;
+    const PlanLimits limits = limitsOf(with.shareAll);
+    accelerators.linksStale |= with.shareAll != accelerators.planSharesAll;
+    accelerators.planSharesAll = with.shareAll;
+    const bool small = state.shapes.size() + state.joints.size() < limits.parallelFrom;
     Executor* executor = small ? nullptr : with.executor;
     followDefinitions(executor);  // bodies, shapes, joints → what follows from them, places
     findPairs(executor);          // motions → bounds, candidate pairs by key
@@ -37,7 +37,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     collideAll(with.simd, executor);  // motions, hulls → manifolds, matched impulses
     timer.done(Stage::Collide);
 
-    updatePlan(executor);  // contacts, joints → islands, batches, colours
+    updatePlan(limits, executor);  // contacts, joints → islands, batches, colours
     timer.done(Stage::Colour);
 
     const SolverWorld world{state.bodies,
@@ -101,6 +101,11 @@ std::uint8_t activityOf(const BodyInfo& info, const BodyMotion& motion) {
 
 }  // namespace
 
+PlanLimits World::Data::limitsOf(bool shareAll) const {
+    if (!shareAll) return planLimits;
+    return {.batchSize = 0, .hubDegree = planLimits.hubDegree, .sharedFrom = 1, .parallelFrom = 0};
+}
+
 void World::Data::findPairs(Executor* executor) {
     Accelerators& acc = accelerators;
     const Shapes& shapes = acc.shapes;
@@ -151,7 +156,7 @@ void World::Data::findPairs(Executor* executor) {
 
 /// Makes the plan again where contacts, joints or who moves have changed; otherwise plan and rows
 /// stay, but for the rows of new manifolds.
-void World::Data::updatePlan(Executor* executor) {
+void World::Data::updatePlan(const PlanLimits& limits, Executor* executor) {
     Accelerators& acc = accelerators;
     Plan& plan = acc.plan;
     if (acc.linksStale) {
@@ -192,7 +197,7 @@ void World::Data::updatePlan(Executor* executor) {
         demand.efforts = efforts;
         demand.ramps = ramps;
         makePlan(plan, std::move(links), jointLinks, std::move(awake),
-                 static_cast<std::uint32_t>(state.bodies.size()), planLimits, demand);
+                 static_cast<std::uint32_t>(state.bodies.size()), limits, demand);
         acc.planStamp = stamp;
     } else {
         for (const std::uint32_t lane : acc.freshLanes) {

@@ -29,8 +29,8 @@ struct StepResources {
     Executor* executor = nullptr;  ///< none: the caller's thread alone
     Simd simd = Simd::Auto;
     Clock clock = nullptr;  ///< none: `StepReport` has no times
-    /// Shares among the workers also what is too little to be worth it, from the world's first step
-    /// on: to measure what that costs.
+    /// Shares among the workers also what is too little to be worth it, in this step: to measure
+    /// what that costs.
     bool shareAll = false;
 };
 
@@ -110,7 +110,7 @@ struct IslandView {
     bool gentle = false;  ///< nothing in it is faster than 1 m/s: its contacts are stiffer
     bool trees = false;   ///< its joint trees are solved at once
     /// Of what the scene's need allows, how much its worst row gives way at rest; an upper bound
-    /// where it is far below 1.
+    /// where it is far below 1. 0 after a restored checkpoint until the next step.
     float strain = 0.0f;
     bool strainedJoint = false;  ///< whether that row is a joint's
 };

@@ -62,8 +62,9 @@ struct Accelerators {
     std::vector<std::uint32_t> freeContacts;  // places of `contacts` that none has
     std::vector<std::uint8_t> inLanes;  // by contact: 1: the solver's rows hold it; contacts.cpp
     Plan plan;
-    bool linksStale = true;  // contacts, joints or who moves may differ from the plan's
-    bool rowsHold = false;   // the solver's contact rows are those of this plan
+    bool linksStale = true;      // contacts, joints or who moves may differ from the plan's
+    bool planSharesAll = false;  // the plan was made for `StepResources::shareAll`
+    bool rowsHold = false;       // the solver's contact rows are those of this plan
     std::vector<std::uint32_t> freshLanes;  // lanes whose contact has a new manifold
     Rows rows;
 
@@ -218,7 +219,9 @@ struct World::Data : Carried {
     // step.cpp
     void step(std::span<const Command> commands, const StepResources& with);
     void findPairs(Executor* executor);
-    void updatePlan(Executor* executor);
+    /// What a step's plan is made by; `shareAll` as in `StepResources`.
+    [[nodiscard]] PlanLimits limitsOf(bool shareAll) const;
+    void updatePlan(const PlanLimits& limits, Executor* executor);
 
     // effort.cpp
     /// From the rows of this step, the levels of the next one.

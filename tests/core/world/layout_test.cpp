@@ -1,6 +1,7 @@
 // What a world says of its last step, against worlds whose islands are counted by hand.
 
 #include "core/graph/plan.h"
+#include "core/solver/rows.h"
 #include "tests/core/support.h"
 
 namespace huestep::test {
@@ -81,6 +82,49 @@ TEST(StepResources, ThreadsThatShareEvenLittleWorkChangeHowAStepIsLaidOutAndNotI
     EXPECT_EQ(shared.stepLayout().giants, shared.report().islands);
     EXPECT_GT(shared.stepLayout().giants, 0u);
     EXPECT_GT(shared.stepLayout().sharedColours, 0u);
+    EXPECT_EQ(shared.stepLayout().batchConstraints, 0u);
+    // Of that step alone: the next one is laid out as if none had ever shared.
+    alone.step({});
+    shared.step({}, {.executor = &executor});
+    EXPECT_EQ(shared.stepLayout().giants, 0u);
+    EXPECT_EQ(shared.stepLayout().sharedColours, 0u);
+    EXPECT_EQ(shared.stepLayout().batchConstraints, standardBatchSize);
+    EXPECT_EQ(shared.fullRoot(), alone.fullRoot());
+}
+
+TEST(StepLayout, OfARestoredCheckpointTellsOfNoStepThatItHasNotTaken) {
+    World world = worldOf("heavy_top:ratio=100,n=3");
+    run(world, 30);
+    Checkpoint then;
+    world.checkpoint(then);
+    const StepLayout before = world.stepLayout();
+    ASSERT_EQ(before.islands.size(), 1u);
+    EXPECT_GT(before.islands[0].strain, 0.0f);
+    run(world, 90);
+    ASSERT_NE(world.stepLayout().islands[0].strain, before.islands[0].strain);
+    world.restore(then);
+    const StepLayout after = world.stepLayout();
+    ASSERT_EQ(after.islands.size(), 1u);
+    EXPECT_EQ(after.islands[0].strain, 0.0f) << "unknown";
+    EXPECT_EQ(after.islands[0].contacts, before.islands[0].contacts);
+    EXPECT_EQ(after.islands[0].substeps, before.islands[0].substeps);
+    EXPECT_EQ(after.islands[0].trees, before.islands[0].trees);
+}
+
+TEST(Rows, CountTheBytesOfEveryListThatAMethodGoesOver) {
+    Rows rows;
+    EXPECT_EQ(rows.bytes(), 0u);
+    rows.bodies.resize(2);
+    rows.poses.resize(3);
+    rows.pushed.resize(5);
+    rows.sources.resize(7);
+    rows.joints.resize(11);
+    rows.memory.changes.resize(13);
+    rows.memory.shares.resize(17);
+    rows.memory.locks.resize(19);
+    EXPECT_EQ(rows.bytes(), 2 * sizeof(SolverBody) + 3 * sizeof(SolverPose) + 5 * 12 +
+                                7 * sizeof(BodySource) + 11 * sizeof(JointRow) + 13 * 16 + 17 * 4 +
+                                19 * 4);
 }
 
 }  // namespace
