@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/state/hash.h"
+#include "core/state/snapshot.h"
 #include "protocol/scene_file.h"
 #include "protocol/schema_text.h"
 
@@ -29,7 +30,7 @@ std::uint64_t schemaHash(std::string_view text) {
 
 Fingerprint buildFingerprint() {
     static const std::uint64_t hash = schemaHash(std::string(sceneSchemaText) + messagesSchemaText);
-    return {0, hash, sceneVersion};
+    return {0, hash, (snapshotVersion << 16) | sceneVersion};
 }
 
 }  // namespace huestep::protocol

@@ -8,7 +8,8 @@
 
 namespace huestep::protocol {
 
-/// The hash of the schemas this program was built with and the version of the scene layout.
+/// The hash of the schemas this program was built with and the versions of the scene and snapshot
+/// layout.
 /// `selfTest` is 0: whoever can step a world fills it in.
 Fingerprint buildFingerprint();
 

@@ -22,7 +22,7 @@ inline constexpr std::uint32_t protocolVersion = 1;
 struct Fingerprint {
     std::uint64_t selfTest = 0;  ///< full root of the built-in self-test scene after 120 ticks
     std::uint64_t schema = 0;    ///< hash of the message schema's text
-    std::uint32_t scene = 0;     ///< version of scene and snapshot layout
+    std::uint32_t scene = 0;     ///< version of the scene layout, of the snapshot's << 16
     friend bool operator==(const Fingerprint&, const Fingerprint&) = default;
 };
 

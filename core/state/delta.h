@@ -22,7 +22,8 @@
 
 namespace huestep {
 
-inline constexpr std::uint32_t deltaVersion = 1;
+/// Goes with `snapshotVersion`: both hold the same records.
+inline constexpr std::uint32_t deltaVersion = 2;
 
 /// The roots are `fullRoot` of the two states.
 std::vector<std::byte> writeDelta(const WorldState& base, std::uint64_t baseRoot,

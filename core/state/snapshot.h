@@ -19,7 +19,8 @@
 
 namespace huestep {
 
-inline constexpr std::uint32_t snapshotVersion = 1;
+/// Of the records' fields, too: who changes one gives the layout a new version.
+inline constexpr std::uint32_t snapshotVersion = 2;
 inline constexpr std::size_t snapshotPiece = 1024;
 
 std::vector<std::byte> writeSnapshot(const WorldState& state);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/state/snapshot.h"
 #include "protocol/scene_file.h"
 
 namespace huestep::protocol {
@@ -18,7 +19,9 @@ TEST(Fingerprint, OfThisBuildIsTheSameEachTimeAndLeavesTheSelfTestToItsCaller) {
     const Fingerprint fingerprint = buildFingerprint();
     EXPECT_EQ(fingerprint, buildFingerprint());
     EXPECT_NE(fingerprint.schema, schemaHash(""));
-    EXPECT_EQ(fingerprint.scene, sceneVersion);
+    EXPECT_EQ(fingerprint.scene & 0xffffu, sceneVersion);
+    EXPECT_EQ(fingerprint.scene >> 16, snapshotVersion)
+        << "an image of another layout cannot be taken over";
     EXPECT_EQ(fingerprint.selfTest, 0u);
 }
 

@@ -3,8 +3,12 @@
 #include "core/state/records.h"
 
 #include <cstring>
+#include <iterator>
 #include <set>
 
+#include "core/state/delta.h"
+#include "core/state/hash.h"
+#include "core/state/snapshot.h"
 #include "core/state/state.h"
 #include "tests/core/support.h"
 
@@ -30,6 +34,35 @@ TEST(Records, AreTiledByTheirFieldsWithoutGapOrOverlap) {
         EXPECT_TRUE(std::is_trivially_copyable_v<Record>);
     });
     EXPECT_EQ(arrays, 12u);
+}
+
+/// What each version of snapshots holds, as a hash of the list of fields. One that was given away
+/// once means the same for ever: a new layout gets a new line, and `snapshotVersion` and
+/// `deltaVersion` its number.
+constexpr std::pair<std::uint32_t, std::uint64_t> layouts[] = {
+    {2, 0x271672d69a245cddu},
+};
+
+TEST(Records, HaveTheLayoutThatTheVersionOfSnapshotsSaysAndNoOther) {
+    WorldState state;
+    std::string text;
+    forEachArray(state, [&](std::string_view name, const auto& array) {
+        using Record = typename std::remove_cvref_t<decltype(array)>::value_type;
+        text += std::string(name) + " " + std::to_string(sizeof(Record)) + "\n";
+        for (const Field& field : fieldsOf<Record>) {
+            text += std::string("  ") + field.name;
+            for (const std::uint32_t part :
+                 {static_cast<std::uint32_t>(field.type), field.offset, field.count})
+                text += " " + std::to_string(part);
+            text += "\n";
+        }
+    });
+    const std::uint64_t hash = hash64Of(std::span<const char>(text.data(), text.size()));
+    EXPECT_EQ(std::rbegin(layouts)->first, snapshotVersion);
+    EXPECT_EQ(std::rbegin(layouts)->first, deltaVersion);
+    EXPECT_EQ(std::rbegin(layouts)->second, hash)
+        << std::hex << "the layout is now 0x" << hash << ": a version of its own for\n"
+        << text;
 }
 
 TEST(Records, StayWithinTheBytesThatTheDesignAllows) {

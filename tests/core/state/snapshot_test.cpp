@@ -97,8 +97,11 @@ TEST(Snapshot, OfNoiseIsRefused) {
     for (int trial = 0; trial < 2000; ++trial) {
         std::vector<std::byte> bytes(random.below(600));
         for (std::byte& b : bytes) b = static_cast<std::byte>(random.below(256));
-        if (random.once(2) && bytes.size() > 16)
-            std::memcpy(bytes.data(), "HUESNAP1\1\0\0\0\14\0\0\0", 16);
+        if (random.once(2) && bytes.size() > 16) {
+            const std::uint32_t versionAndArrays[] = {snapshotVersion, 12};
+            std::memcpy(bytes.data(), "HUESNAP1", 8);
+            std::memcpy(bytes.data() + 8, versionAndArrays, 8);
+        }
         EXPECT_NE(refusal(bytes), "");
     }
 }
