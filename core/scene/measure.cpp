@@ -1,6 +1,9 @@
 #include "core/scene/measure.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/collision/manifold.h"
@@ -14,6 +17,12 @@ using Vec2d = Vec2T<double>;
 using Posed = PoseT<double>;
 
 constexpr std::uint32_t nowhere = 0xffffffffu;
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+bool isFinite(const Posed& pose) {
+    return std::isfinite(pose.p.x) && std::isfinite(pose.p.y) && std::isfinite(pose.q.c) &&
+           std::isfinite(pose.q.s);
+}
 
 /// The pose in double, its rotation brought back to unit length: the measure judges positions, not
 /// the rounding of a unit vector.
@@ -97,9 +106,10 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> linkedBodies(
     return linked;
 }
 
-std::vector<Placed> placedShapes(std::span<const BodyInfo> bodies,
-                                 std::span<const ShapeInfo> shapes,
-                                 std::span<const BodyMotion> motions) {
+/// Nothing where a shape's body is not finite.
+std::optional<std::vector<Placed>> placedShapes(std::span<const BodyInfo> bodies,
+                                                std::span<const ShapeInfo> shapes,
+                                                std::span<const BodyMotion> motions) {
     std::vector<Placed> placed;
     placed.reserve(shapes.size());
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -107,8 +117,10 @@ std::vector<Placed> placedShapes(std::span<const BodyInfo> bodies,
         entry.shape = static_cast<std::uint32_t>(i);
         entry.body = placeOf(bodies, shapes[i].body);
         if (entry.body == nowhere) continue;
+        const Posed pose = poseOf(motions[entry.body]);
+        if (!isFinite(pose)) return std::nullopt;  // it has no place in any order
         entry.hull = hullOf<double>(shapes[i]);
-        entry.bounds = boundsOf(entry.hull, poseOf(motions[entry.body]));
+        entry.bounds = boundsOf(entry.hull, pose);
         placed.push_back(entry);
     }
     return placed;
@@ -148,10 +160,14 @@ void measurePenetration(std::span<const BodyInfo> bodies, std::span<const ShapeI
                         std::span<const JointInfo> joints, std::span<const BodyMotion> motions,
                         Measures& into) {
     const auto linked = linkedBodies(bodies, joints);
-    std::vector<Placed> placed = placedShapes(bodies, shapes, motions);
+    std::optional<std::vector<Placed>> placed = placedShapes(bodies, shapes, motions);
+    if (!placed) {
+        into.maxPenetration = into.meanPenetration = unbounded;
+        return;
+    }
     double sum = 0.0;
     std::size_t pairs = 0;
-    sweep(placed, [&](const Placed& a, const Placed& b) {
+    sweep(*placed, [&](const Placed& a, const Placed& b) {
         if (a.body == b.body) return;
         if (!bodies[a.body].dynamic() && !bodies[b.body].dynamic()) return;
         if (!mayTouch(shapes[a.shape].filter(), shapes[b.shape].filter())) return;
@@ -214,7 +230,11 @@ double maxJointErrorOf(std::span<const BodyInfo> bodies, std::span<const JointIn
         const std::uint32_t a = placeOf(bodies, joint.bodyA);
         const std::uint32_t b = placeOf(bodies, joint.bodyB);
         if (a == nowhere || b == nowhere) continue;
-        most = std::max(most, errorOf(joint, poseOf(motions[a]), poseOf(motions[b])));
+        const Posed poseA = poseOf(motions[a]);
+        const Posed poseB = poseOf(motions[b]);
+        // A maximum would pass over what is not a number.
+        const bool known = isFinite(poseA) && isFinite(poseB);
+        most = std::max(most, known ? errorOf(joint, poseA, poseB) : unbounded);
     }
     return most;
 }

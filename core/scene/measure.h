@@ -9,6 +9,8 @@
 
 namespace huestep {
 
+/// Of motions that are not finite the energy is no finite number, and a penetration or joint error
+/// that such a body has part in is infinite.
 struct Measures {
     double energy = 0.0;  ///< J: Σ m v²/2 + I ω²/2 − m g·x, of dynamic bodies, where g
                           ///< is the gravity that the body feels (its scale included)

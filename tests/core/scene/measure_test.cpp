@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace huestep {
 namespace {
@@ -93,6 +94,43 @@ TEST(Measure, FindsTheDepthOfATurnedBoxInTheGround) {
     setup.motions[1].position.y = 0.71f;
     EXPECT_EQ(setup.take().maxPenetration, 0.0);
     EXPECT_EQ(setup.take().meanPenetration, 0.0);
+}
+
+TEST(Measure, TakesWhatIsNotANumberForInfinitelyFarOff) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinite = std::numeric_limits<float>::infinity();
+    // Whichever of three bodies it is, in a row with two joints: a maximum over the others is not
+    // what is asked for.
+    for (std::size_t broken = 0; broken < 3; ++broken) {
+        for (const float value : {nan, infinite, -infinite}) {
+            for (const int part : {0, 1, 2, 3}) {
+                HandMade setup;
+                std::vector<BodyId> ids;
+                for (const float x : {0.0f, 1.0f, 2.0f}) {
+                    ids.push_back(setup.addBody(BodyType::Dynamic, {x, 0.0f}, 1.0f, 1.0f));
+                    setup.addShape(ids.back(), ShapeDef::circle({}, 0.25f));
+                }
+                setup.addJoint(JointKind::Revolute, ids[0], {0.5f, 0.0f}, ids[1], {-0.5f, 0.0f});
+                setup.addJoint(JointKind::Prismatic, ids[1], {0.5f, 0.0f}, ids[2], {-0.5f, 0.0f})
+                    .target = {1.0f, 0.0f};
+                EXPECT_EQ(setup.take().maxJointError, 0.0);
+                EXPECT_EQ(setup.take().maxPenetration, 0.0);
+                setup.motions[broken].angularVelocity = value;
+                EXPECT_FALSE(std::isfinite(setup.take().energy));
+                EXPECT_EQ(setup.take().maxPenetration, 0.0) << "where it is is known";
+                BodyMotion& motion = setup.motions[broken];
+                (part == 0   ? motion.position.x
+                 : part == 1 ? motion.position.y
+                 : part == 2 ? motion.rotation.c
+                             : motion.rotation.s) = value;
+                const Measures measures = setup.take();
+                const double far = std::numeric_limits<double>::infinity();
+                EXPECT_EQ(measures.maxPenetration, far) << broken << part << value;
+                EXPECT_EQ(measures.meanPenetration, far) << broken << part << value;
+                EXPECT_EQ(measures.maxJointError, far) << broken << part << value;
+            }
+        }
+    }
 }
 
 TEST(Measure, CountsTheRadiusOfRoundedShapes) {
