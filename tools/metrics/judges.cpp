@@ -8,6 +8,7 @@ namespace {
 
 bool isWhole(const BodyMotion& m) {
     return std::isfinite(m.position.x) && std::isfinite(m.position.y) &&
+           std::isfinite(m.rotation.c) && std::isfinite(m.rotation.s) &&
            std::isfinite(m.velocity.x) && std::isfinite(m.velocity.y) &&
            std::isfinite(m.angularVelocity);
 }
@@ -17,9 +18,9 @@ class Folded final : public Judge {
     Folded(const World& start, Fold fold, Window window, Measure measure)
         : m_bodies(start.motions().size()),
           m_step(static_cast<double>(start.info().stepSeconds)),
-          m_fold(fold),
           m_window(window),
-          m_measure(std::move(measure)) {}
+          m_measure(std::move(measure)),
+          m_sizes(fold) {}
 
     void watch(std::uint64_t tick, std::span<const Command>, std::span<const BodyMotion> motions,
                bool) override {
@@ -29,34 +30,17 @@ class Folded final : public Judge {
             motions.size() == m_bodies && std::all_of(motions.begin(), motions.end(), isWhole);
         const double value =
             whole ? m_measure({tick, static_cast<double>(tick) * m_step, motions}) : failed;
-        const double size = std::isfinite(value) ? std::abs(value) : failed;
-        ++m_count;
-        switch (m_fold) {
-            case Fold::Last:
-                m_value = size;
-                break;
-            case Fold::Most:
-                m_value = std::max(m_value, size);
-                break;
-            case Fold::Rms:
-                m_value += size * size;
-                break;
-        }
+        m_sizes.add(std::abs(value));
     }
 
-    [[nodiscard]] double error() const override {
-        if (m_count == 0) return failed;
-        return m_fold == Fold::Rms ? std::sqrt(m_value / static_cast<double>(m_count)) : m_value;
-    }
+    [[nodiscard]] double error() const override { return m_sizes.value(); }
 
  private:
     std::size_t m_bodies;
     double m_step;  // s
-    Fold m_fold;
     Window m_window;
     Measure m_measure;
-    double m_value = 0.0;
-    std::uint64_t m_count = 0;
+    Folding m_sizes;
 };
 
 }  // namespace

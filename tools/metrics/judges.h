@@ -11,6 +11,7 @@
 #include "core/scene/in_double.h"
 #include "core/scene/measure.h"
 #include "core/world/world.h"
+#include "tools/fold.h"
 #include "tools/metrics/metric.h"
 
 namespace huestep::tools {
@@ -28,12 +29,6 @@ struct Frame {
 
 /// How far a frame is from the truth, in the case's unit.
 using Measure = std::function<double(const Frame& frame)>;
-
-enum class Fold : std::uint8_t {
-    Last,  ///< at the last tick
-    Most,
-    Rms,  ///< root of the mean square
-};
 
 /// Ticks that count, both ends included.
 struct Window {

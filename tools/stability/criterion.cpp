@@ -1,7 +1,6 @@
 #include "tools/stability/criterion.h"
 
-#include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace huestep::tools::stability {
 
@@ -15,20 +14,9 @@ constexpr double slack = 1.0e-9;  // s
 void Watch::look(const Moment& moment) {
     if (moment.seconds < m_criterion.from - slack || moment.seconds > m_criterion.to + slack)
         return;
-    if (m_looks > 0 && moment.seconds < m_next - slack) return;
+    if (looked() && moment.seconds < m_next - slack) return;
     m_next = moment.seconds + m_criterion.every;
-    const double value = m_criterion.measure(moment);
-    // Whatever is not a number is as bad as can be.
-    const double safe = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
-    m_most = m_looks == 0 ? safe : std::max(m_most, safe);
-    m_squares += safe * safe;
-    ++m_looks;
-}
-
-double Watch::value() const {
-    if (m_looks == 0) return std::numeric_limits<double>::infinity();
-    if (m_criterion.fold == Fold::Most) return m_most;
-    return std::sqrt(m_squares / static_cast<double>(m_looks));
+    m_values.add(m_criterion.measure(moment));
 }
 
 bool Watch::holds() const {

@@ -11,6 +11,7 @@
 
 #include "core/math/vec.h"
 #include "tools/definitions.h"
+#include "tools/fold.h"
 
 namespace huestep::tools::stability {
 
@@ -40,11 +41,6 @@ struct Moment {
 /// ≥ 0 where it is a size; a larger one is worse.
 using Measure = std::function<double(const Moment& moment)>;
 
-enum class Fold : std::uint8_t {
-    Most,  ///< the largest
-    Rms    ///< the root of the mean square
-};
-
 struct Criterion {
     std::string what;  ///< what the value is: "farthest that a body moved"
     std::string unit;
@@ -60,23 +56,22 @@ struct Criterion {
 /// Follows one criterion through a run.
 class Watch {
  public:
-    explicit Watch(Criterion criterion) : m_criterion(std::move(criterion)) {}
+    explicit Watch(Criterion criterion)
+        : m_criterion(std::move(criterion)), m_values(m_criterion.fold) {}
 
     void look(const Moment& moment);
 
     [[nodiscard]] const Criterion& criterion() const { return m_criterion; }
-    [[nodiscard]] bool looked() const { return m_looks > 0; }
+    [[nodiscard]] bool looked() const { return m_values.count() > 0; }
     /// So far; infinite before the first look.
-    [[nodiscard]] double value() const;
+    [[nodiscard]] double value() const { return m_values.value(); }
     [[nodiscard]] bool holds() const;
     /// Value over limit: 1 is at the limit. Of a limit of 0: infinite, or 0 where it holds.
     [[nodiscard]] double share() const;
 
  private:
     Criterion m_criterion;
-    double m_most = 0.0;
-    double m_squares = 0.0;
-    std::uint64_t m_looks = 0;
+    Folding m_values;
     double m_next = 0.0;  ///< s, when to look again
 };
 
