@@ -80,12 +80,14 @@ Json crossingsOf(const std::vector<WaysRow>& sizes) {
                 if (row.family == family)
                     gains.push_back({static_cast<double>(row.constraints()),
                                      row.ratio(question.against, question.way) / worthWhile});
-            const std::optional<double> from = paysFrom(gains);
-            list.push_back({{"family", family},
-                            {"question", question.text},
-                            {"from_constraints", from ? Json(std::round(*from)) : Json()},
-                            {"least_measured", gains.front().constraints},
-                            {"most_measured", gains.back().constraints}});
+            const std::optional<Crossing> from = paysFrom(gains);
+            list.push_back(
+                {{"family", family},
+                 {"question", question.text},
+                 {"from_constraints", from ? Json(std::round(from->constraints)) : Json()},
+                 {"at_most", from && from->atMost},
+                 {"least_measured", gains.front().constraints},
+                 {"most_measured", gains.back().constraints}});
         }
     return list;
 }

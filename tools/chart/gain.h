@@ -12,8 +12,15 @@ struct Gain {
     double factor = 1.0;
 };
 
+/// From which size on a way pays.
+struct Crossing {
+    double constraints = 0.0;
+    bool atMost = false;  ///< it pays at the smallest size that was measured, and may below
+    friend bool operator==(const Crossing&, const Crossing&) = default;
+};
+
 /// From how many constraints on a way is faster at every larger size that was measured; none: not
 /// even at the largest. `gains` by rising size; between two of them linear in the logarithms.
-std::optional<double> paysFrom(std::span<const Gain> gains);
+std::optional<Crossing> paysFrom(std::span<const Gain> gains);
 
 }  // namespace huestep::tools::chart

@@ -51,13 +51,13 @@ TEST(Gain, PaysFromWhereEveryLargerSizeGains) {
         std::vector<Gain> gains(1 + random() % 6);
         double size = 1.0;
         for (Gain& gain : gains) gain = {size *= 3.0, factor(random)};
-        const std::optional<double> from = paysFrom(gains);
+        const std::optional<Crossing> from = paysFrom(gains);
         EXPECT_EQ(from.has_value(), gains.back().factor > 1.0);
         for (const Gain& gain : gains) {
             if (!from) break;
             // Sizes from there on gain; the one before, if any, does not.
-            const bool after = gain.constraints >= *from;
-            const bool before = !after && 3.0 * gain.constraints > *from;
+            const bool after = gain.constraints >= from->constraints;
+            const bool before = !after && 3.0 * gain.constraints > from->constraints;
             EXPECT_TRUE(!after || gain.factor > 1.0) << gain.constraints;
             EXPECT_TRUE(!before || gain.factor <= 1.0) << gain.constraints;
         }
@@ -66,7 +66,10 @@ TEST(Gain, PaysFromWhereEveryLargerSizeGains) {
 
 TEST(Gain, LiesBetweenTwoSizesByTheirLogarithms) {
     const Gain gains[] = {{10.0, 0.5}, {1000.0, 2.0}};
-    EXPECT_NEAR(paysFrom(gains).value_or(0.0), 100.0, 1e-9);
+    EXPECT_NEAR(paysFrom(gains).value_or(Crossing{}).constraints, 100.0, 1e-9);
+    EXPECT_FALSE(paysFrom(gains).value_or(Crossing{}).atMost);
+    // Where it pays at all sizes it pays from at most the smallest.
+    EXPECT_EQ(paysFrom(std::span(gains).last(1)), (Crossing{gains[1].constraints, true}));
     EXPECT_EQ(paysFrom(std::span(gains, 1)), std::nullopt);
     EXPECT_EQ(paysFrom({}), std::nullopt);
 }

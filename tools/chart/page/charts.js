@@ -481,7 +481,7 @@ var huestepCharts = (function () {
       /** @type {any[]} */
       var marks = [{ yAxis: 1, label: { formatter: look.narrow ? '' : 'colours, 1 thread', position: 'insideStartTop' } }];
       if (crossing && crossing.from_constraints && !busy(doc))
-        marks.push({ xAxis: crossing.from_constraints, lineStyle: { color: colours[1], type: 'dotted' }, label: { color: colours[1], formatter: 'pays from ' + crossing.from_constraints, position: 'insideEndTop' } });
+        marks.push({ xAxis: crossing.from_constraints, lineStyle: { color: colours[1], type: 'dotted' }, label: { color: colours[1], formatter: 'pays from ' + (crossing.at_most ? 'at most ' : '') + crossing.from_constraints, position: 'insideEndTop' } });
       /** @type {any} */ (series[0]).markLine = { silent: true, symbol: 'none', label: legible(look, { distance: 6, color: ink.text, fontSize: 11 }), lineStyle: { color: ink.text, type: 'solid', width: 1 }, data: marks };
       var spanX = decades(rows.map(function (/** @type {Row} */ row) { return row.constraints; }));
       var more = zoom(look, 'xy');
@@ -758,8 +758,6 @@ var huestepCharts = (function () {
       if (!verdict.judged) return;
       cell.judged = true;
       if (!verdict.pass) cell.pass = false;
-      // Of the light pendulum each n is a scene of its own.
-      if (verdict.row === 17) return;
       // A row's frontier is that of its hardest scene; none of one is none of all.
       if (verdict.frontier === null) return;
       if (verdict.frontier === 0 || cell.frontier === 0) cell.frontier = 0;

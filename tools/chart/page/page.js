@@ -288,7 +288,7 @@
       said.push(
         c.from_constraints === null
           ? `A second thread does not pay in ${what} of up to ${c.most_measured} constraints.`
-          : `A second thread pays in ${what} from about ${c.from_constraints} constraints on.`,
+          : `A second thread pays in ${what} from ${c.at_most ? 'at most' : 'about'} ${c.from_constraints} constraints on${c.at_most ? ', the fewest that were measured' : ''}.`,
       );
     }
     const most = Math.max(0, ...doc.scenes.map((/** @type {Row} */ r) => r.overflow_share));
