@@ -105,8 +105,10 @@ Status measureTime(const NamedScene& scene, BenchResult& row, Progress& progress
 Result<bool> benchScene(const NamedScene& scene, int repeats, std::vector<BenchResult>& rows) {
     const std::uint64_t runs = rows.size() * static_cast<std::uint64_t>(repeats + 1);
     Progress progress(scene.name, runs * rows.front().ticks);
-    for (BenchResult& row : rows)
+    for (BenchResult& row : rows) {
+        if (interrupted()) return false;  // a world for nothing takes time as well
         if (const Status done = measureErrors(scene, row, progress); !done) return done.error();
+    }
     for (int repeat = 0; repeat < repeats; ++repeat)
         for (BenchResult& row : rows) {
             if (interrupted()) return false;
