@@ -17,7 +17,7 @@ Result<bool> measureStability(Extent extent, Json& rows) {
         StabilityOptions options;
         options.configuration = {contender.engine, contender.name(), contender.substeps};
         options.effort = StabilityEffort::Quick;
-        options.frontier = extent == Extent::Full && ours;
+        options.frontier = extent != Extent::Quick && ours;
         if (extent == Extent::Smoke) options.rows = {9, 23};
         Result<StabilityResult> result =
             runStability(options, [](const StabilityVerdict*, double) { return !interrupted(); });

@@ -75,13 +75,14 @@ StabilityOptions suiteOptions(const Options& options) {
                    : options.full ? StabilityEffort::Full
                                   : StabilityEffort::Standard;
     for (const std::string& word : options.words) {
-        const bool digits = word.find_first_not_of("0123456789") == std::string::npos;
+        const bool digits =
+            !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
         if (digits && word.size() < 4)
             suite.rows.push_back(std::stoi(word));
         else
             suite.scenes.push_back(word);
     }
-    suite.frontier = !options.noFrontier;
+    suite.frontier = !options.noFrontier && !options.quick;
     suite.threads = options.threads;
     suite.saveTo = options.save;
     return suite;

@@ -9,6 +9,7 @@
 #include "core/solver/method.h"
 #include "tools/engines.h"
 #include "tools/story.h"
+#include "tools/text.h"
 
 namespace huestep::tools::stability {
 
@@ -28,6 +29,30 @@ Result<RunOutcome> withoutScene(const Setup& setup, const Error& why) {
     outcome.judgement.value = std::numeric_limits<double>::infinity();
     outcome.judgement.what = "a scene that the engine cannot have";
     outcome.judgement.why = why.message;
+    return outcome;
+}
+
+/// The run that others are compared with. Its own value has no limit: what it is says nothing
+/// alone.
+Setup inKeyOrder(const Setup& setup) {
+    Setup ordered = setup;
+    ordered.configuration = {"huestep", "sequential", setup.configuration.substeps};
+    ordered.scene.method = Method::Sequential;
+    ordered.scene.substeps = setup.configuration.substeps;
+    ordered.trial.criteria.front().limit = std::numeric_limits<double>::infinity();
+    ordered.trial.criteria.front().mayReach = true;
+    return ordered;
+}
+
+RunOutcome notComparable(const RunOutcome& reference) {
+    const Judgement& judged = reference.judgement;
+    RunOutcome outcome;
+    outcome.judgement.value = std::numeric_limits<double>::infinity();
+    outcome.judgement.what = "a ratio to a run in key order that is none";
+    outcome.judgement.why =
+        "the run in key order, to compare with, came to nothing: " +
+        (judged.why.empty() ? judged.what + ": " + number(judged.value) + " " + judged.unit
+                            : judged.why);
     return outcome;
 }
 
@@ -110,6 +135,23 @@ Result<RunOutcome> runOnce(const Setup& setup, const RunOptions& options) {
     }
     outcome.judgement = judge.judgement();
     return outcome;
+}
+
+Result<RunOutcome> runAsAsked(const Setup& setup, const RunOptions& options) {
+    if (!setup.trial.againstKeyOrder) return runOnce(setup, options);
+    Result<RunOutcome> reference =
+        runOnce(inKeyOrder(setup), {options.threads, false, 0, options.onTick});
+    if (!reference) return reference.error();
+    const double unit = reference->judgement.value;
+    if (!reference->finished) return reference;
+    if (!reference->judgement.pass || !std::isfinite(unit) || unit <= 0.0)
+        return notComparable(*reference);
+    Setup scaled = setup;
+    const Measure plain = setup.trial.criteria.front().measure;
+    scaled.trial.criteria.front().measure = [plain, unit](const Moment& moment) {
+        return plain(moment) / unit;
+    };
+    return runOnce(scaled, options);
 }
 
 Result<HashesCompared> compareHashes(const Setup& setup, const RunOutcome& run,

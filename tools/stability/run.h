@@ -53,6 +53,11 @@ struct RunOutcome {
 /// Fails where the engine cannot have the scene.
 Result<RunOutcome> runOnce(const Setup& setup, const RunOptions& options);
 
+/// The same, and where the trial compares with key order, that run before it: the value is the
+/// ratio of both then. A reference that breaks a rule, is not finite or measures nothing compares
+/// with nothing: the run is not taken and has failed.
+Result<RunOutcome> runAsAsked(const Setup& setup, const RunOptions& options);
+
 /// What the comparison of hashes came to.
 struct HashesCompared {
     bool equal = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "core/solver/method.h"
 #include "tools/engines.h"
@@ -67,8 +68,13 @@ class Suite {
 
     const StabilityOptions& m_options;
     const StabilityProgress& m_progress;
-    std::map<std::string, bool> m_passed;  ///< of scenes at the origin, in the configuration
-    double m_done = 0.0, m_all = 1.0;      ///< cost
+    /// Row, scene and substeps, of scenes at the origin in the configuration.
+    using Known = std::tuple<int, std::string, std::uint32_t>;
+    static Known keyOf(const Trial& trial, const std::string& text) {
+        return {trial.row, text, trial.substeps};
+    }
+    std::map<Known, bool> m_passed;
+    double m_done = 0.0, m_all = 1.0;  ///< cost
     std::uint64_t m_calls = 0;
     bool m_stopped = false;
 };
@@ -103,26 +109,10 @@ Status Suite::run(const std::vector<Job>& jobs, StabilityResult& result) {
     return Done{};
 }
 
-/// A run, and where the row compares with key order, that run before it.
 Result<RunOutcome> Suite::judged(const Setup& setup, RunOptions options) {
     options.threads = m_options.threads;
     options.onTick = [this] { return goOn(); };
-    if (!setup.trial.againstKeyOrder) return runOnce(setup, options);
-    Setup ordered = setup;
-    ordered.configuration = {"huestep", "sequential", setup.configuration.substeps};
-    ordered.scene.method = Method::Sequential;
-    ordered.scene.substeps = setup.configuration.substeps;
-    const Result<RunOutcome> reference =
-        runOnce(ordered, {m_options.threads, false, 0, options.onTick});
-    if (!reference) return reference.error();
-    // The limit is on the ratio, so the run itself is held to the reference's value times it.
-    Setup scaled = setup;
-    const double unit = reference->judgement.value;
-    const Measure plainMeasure = setup.trial.criteria.front().measure;
-    scaled.trial.criteria.front().measure = [plainMeasure, unit](const Moment& moment) {
-        return plainMeasure(moment) / unit;
-    };
-    return runOnce(scaled, options);
+    return runAsAsked(setup, options);
 }
 
 Result<bool> Suite::passes(const Trial& trial, const Placing& placing,
@@ -151,11 +141,7 @@ Status Suite::compare(const Setup& setup, const RunOutcome& run, StabilityVerdic
 Status Suite::findFrontier(const Job& job, StabilityVerdict& verdict) {
     StabilityConfiguration configuration = m_options.configuration;
     if (!isHuestep(configuration)) return Done{};
-    if (job.trial.substeps != 0) {
-        verdict.frontier = verdict.pass ? static_cast<int>(job.trial.substeps) : 0;
-        return Done{};
-    }
-    if (!m_options.frontier || m_options.effort == StabilityEffort::Quick) return Done{};
+    if (!m_options.frontier || job.trial.substeps != 0) return Done{};
     for (const std::uint32_t substeps : frontierSubsteps) {
         configuration.substeps = substeps;
         const bool known = substeps == m_options.configuration.substeps;
@@ -191,7 +177,7 @@ Result<Suite::Examined> Suite::examine(const Job& job, StabilityVerdict& verdict
         const auto bodies = static_cast<double>(setup->scene.bodies.size());
         const double most = hashBudget(m_options.effort) / std::max(bodies, 1.0);
         options.hashTicks =
-            std::clamp<std::uint64_t>(static_cast<std::uint64_t>(most), 2, setup->ticks);
+            std::min(std::max<std::uint64_t>(static_cast<std::uint64_t>(most), 2), setup->ticks);
     }
     const Result<RunOutcome> outcome = judged(*setup, options);
     if (!outcome) return outcome.error();
@@ -206,7 +192,7 @@ Result<Suite::Examined> Suite::examine(const Job& job, StabilityVerdict& verdict
     verdict.why = judgement.why;
     if (const Status compared = compare(*setup, *outcome, verdict); !compared)
         return compared.error();
-    m_passed[setup->text] = verdict.pass;
+    m_passed[keyOf(job.trial, setup->text)] = verdict.pass;
     if (const Status found = findFrontier(job, verdict); !found) return found.error();
     return Examined{std::move(setup).value(), judgement};
 }
@@ -230,13 +216,13 @@ Status Suite::far(const Job& job, StabilityVerdict& verdict) {
 Status Suite::compareWithOrigin(const Job& job, StabilityVerdict& verdict) {
     Placing origin = job.placing;
     origin.far = 0.0;
-    const std::string text = textOf(job.trial, origin);
-    if (!m_passed.contains(text)) {
+    const Known key = keyOf(job.trial, textOf(job.trial, origin));
+    if (!m_passed.contains(key)) {
         const Result<bool> passed = passes(job.trial, origin, m_options.configuration);
         if (!passed) return passed.error();
-        m_passed[text] = *passed;
+        m_passed[key] = *passed;
     }
-    if (m_passed[text]) return Done{};
+    if (m_passed[key]) return Done{};
     verdict.pass = true;
     verdict.what += ", which fails at the origin too";
     verdict.why.clear();

@@ -55,7 +55,8 @@ struct StabilityVerdict {
     double value = 0.0;  ///< of that criterion, in `unit`; infinite: not finite, or never reached
     double limit = 0.0;  ///< in `unit`
     std::string unit;    ///< "m", "m/s", "rad", "bodies", "1": a share or a ratio
-    int frontier = 0;  ///< smallest n of {1,2,4,8,16,32} that passes; 0: none; −1: not asked for
+    int frontier = 0;  ///< smallest n of {1,2,4,8,16,32} that passes; 0: none; −1: not asked for,
+                       ///< or n is the row's
     std::string why;   ///< of a failure, a sentence
     std::string what;  ///< what the value is: "farthest that a body moved"
     bool judged = true;   ///< false: reported only, the row may pass without it

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "tests/tools/document.h"
@@ -53,13 +54,24 @@ TEST(Stability, PrintsATableWithASummaryAndExitStatus1WhereARowFails) {
 }
 
 TEST(Stability, FindsTheFewestSubstepsThatPass) {
-    const Json document = documentOf({"stability", "dominoes", "--substeps", "8"});
-    for (const Json& row : document["rows"]) {
-        ASSERT_TRUE(row["frontier"].is_number()) << row;
-        EXPECT_GE(row["frontier"].get<int>(), 1);
-        EXPECT_LE(row["frontier"].get<int>(), 8);
+    std::map<std::string, int> fewest;
+    for (const int substeps : {32, 16, 8, 4, 2, 1}) {
+        const Ended ended = huestep({"stability", "chain:ratio=100", "--no-frontier", "--json",
+                                     "--substeps", std::to_string(substeps)});
+        ASSERT_TRUE(ended.status == 0 || ended.status == 1) << ended.err;
+        const Json document = Json::parse(ended.out, nullptr, false);
+        ASSERT_FALSE(document.is_discarded()) << ended.out;
+        for (const Json& row : document["rows"]) {
+            EXPECT_TRUE(row["frontier"].is_null()) << row;
+            if (row["pass"] == true) fewest[row["scene"]] = substeps;
+        }
     }
-    EXPECT_EQ(document["rows"].size(), 2u) << "upright and turned";
+    const Json document = documentOf({"stability", "chain:ratio=100", "--substeps", "32"});
+    EXPECT_EQ(document["rows"].size(), 4u) << "hanging and swinging, upright and turned";
+    for (const Json& row : document["rows"])
+        EXPECT_EQ(row["frontier"], fewest[row["scene"]]) << row;
+    const Json quick = documentOf({"stability", "dominoes", "--quick"});
+    EXPECT_TRUE(quick["rows"][0]["frontier"].is_null()) << quick;
 }
 
 TEST(Stability, SavesAFailureThatCanBePlayedAgain) {
@@ -103,6 +115,7 @@ TEST(Stability, RefusesWhatIsNoRowNoSceneNoMethodAndNoNewFolder) {
     std::filesystem::create_directories(folder / "full/inside");
     const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
         {{"stability", "29"}, "there is no row 29; there are 1 to 28"},
+        {{"stability", ""}, "no row has a scene ''"},
         {{"stability", "pyrmaid"}, "no row has a scene 'pyrmaid'"},
         {{"stability", "--method", "magic"}, "--method: there is no 'magic'; there is soft-step, "},
         {{"stability", "2", "--save", folder / "full"}, "is not an empty folder"}};
