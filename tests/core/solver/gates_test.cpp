@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/scene/measure.h"
-#include "tests/core/support.h"
+#include "tests/core/pendulum.h"
 
 namespace huestep::test {
 namespace {
@@ -21,48 +21,14 @@ double jointErrorOf(const World& world) {
         .maxJointError;
 }
 
-/// Arithmetic-geometric mean: it doubles its digits with every turn.
-double agm(double a, double b) {
-    for (int i = 0; i < 8; ++i) {
-        const double mean = 0.5 * (a + b);
-        b = std::sqrt(a * b);
-        a = mean;
-    }
-    return a;
-}
-
 TEST(Gate, PendulumAt90DegreesKeepsItsPeriodTo1e4AndItsEnergyTo2PerMille) {
     World world = worldOf("pendulum:angle=90");
     ASSERT_TRUE(world.info().planned());
-    // A disc of radius 0.1 m, 1 m from its pivot: L_eff = 1 + I/(m L) = 1.005 m.
-    const double length = 1.005;
-    const double exact =
-        2.0 * std::numbers::pi * std::sqrt(length / g) / agm(1.0, std::cos(std::numbers::pi / 4.0));
+    const double exact = pendulumPeriod(0.5 * std::numbers::pi);
     const double start = energyOf(world);
     const double scale = wide(world.bodies()[1].mass) * g;  // m g L: what it has above its lowest
 
-    // Passages through the vertical, x = 0, interpolated by the cubic that the positions and
-    // velocities at both ends of the tick give.
-    std::vector<double> passages;
-    for (int tick = 0; tick < 600; ++tick) {
-        const BodyMotion before = world.motions()[1];
-        world.step({});
-        const BodyMotion after = world.motions()[1];
-        const double x0 = wide(before.position.x), x1 = wide(after.position.x);
-        if ((x0 < 0.0) == (x1 < 0.0)) continue;
-        const double v0 = dt * wide(before.velocity.x), v1 = dt * wide(after.velocity.x);
-        double low = 0.0, high = 1.0;
-        for (int i = 0; i < 60; ++i) {
-            const double t = 0.5 * (low + high);
-            const double x = (1 + 2 * t) * (1 - t) * (1 - t) * x0 + t * (1 - t) * (1 - t) * v0 +
-                             t * t * (3 - 2 * t) * x1 + t * t * (t - 1) * v1;
-            ((x < 0.0) == (x0 < 0.0) ? low : high) = t;
-        }
-        passages.push_back(dt * (tick + low));
-    }
-    ASSERT_GT(passages.size(), 6u);
-    const auto halves = static_cast<double>(passages.size() - 1);
-    const double period = 2.0 * (passages.back() - passages.front()) / halves;
+    const double period = measuredPeriod(world, 600);
     EXPECT_LT(std::abs(period / exact - 1.0), 1e-4) << period << " s instead of " << exact;
     const double loss = start - energyOf(world);
     EXPECT_LT(loss / scale, 0.002);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/core/pendulum.h"
 #include "tests/core/solver/tree_scenes.h"
 
 namespace huestep::test {
@@ -78,39 +79,8 @@ TEST(TreeGate, StretchedChainComesTogetherGently) {
     }
 }
 
-/// Period of a pendulum released at 90°, s, over `ticks` ticks: passages through the vertical,
-/// interpolated by the cubic that positions and velocities give.
-double periodOf(World& world, int ticks) {
-    const double dt = 1.0 / 60.0;
-    std::vector<double> passages;
-    for (int tick = 0; tick < ticks; ++tick) {
-        const BodyMotion before = world.motions()[1];
-        world.step({});
-        const BodyMotion after = world.motions()[1];
-        const double x0 = wide(before.position.x), x1 = wide(after.position.x);
-        if ((x0 < 0.0) == (x1 < 0.0)) continue;
-        const double v0 = dt * wide(before.velocity.x), v1 = dt * wide(after.velocity.x);
-        double low = 0.0, high = 1.0;
-        for (int i = 0; i < 60; ++i) {
-            const double t = 0.5 * (low + high);
-            const double x = (1 + 2 * t) * (1 - t) * (1 - t) * x0 + t * (1 - t) * (1 - t) * v0 +
-                             t * t * (3 - 2 * t) * x1 + t * t * (t - 1) * v1;
-            ((x < 0.0) == (x0 < 0.0) ? low : high) = t;
-        }
-        passages.push_back(dt * (tick + low));
-    }
-    const auto halves = static_cast<double>(passages.size() - 1);
-    return 2.0 * (passages.back() - passages.front()) / halves;
-}
-
 TEST(TreeGate, PendulumIsOfSecondOrderAndKeepsItsEnergy) {
-    double agm = 1.0, b = std::cos(std::numbers::pi / 4.0);
-    for (int i = 0; i < 8; ++i) {
-        const double mean = 0.5 * (agm + b);
-        b = std::sqrt(agm * b);
-        agm = mean;
-    }
-    const double exact = 2.0 * std::numbers::pi * std::sqrt(1.005 / g) / agm;
+    const double exact = pendulumPeriod(0.5 * std::numbers::pi);
     std::vector<double> errors;
     for (const std::uint32_t substeps : {1u, 4u, 16u}) {
         Scene scene = *sceneFromCatalog("pendulum:angle=90");
@@ -119,7 +89,7 @@ TEST(TreeGate, PendulumIsOfSecondOrderAndKeepsItsEnergy) {
         World world = worldOf(scene);
         const double start = measuresOf(world).energy;
         const double scale = wide(world.bodies()[1].mass) * g;
-        errors.push_back(std::abs(periodOf(world, 600) / exact - 1.0));
+        errors.push_back(std::abs(measuredPeriod(world, 600) / exact - 1.0));
         const double loss = (start - measuresOf(world).energy) / scale;
         SCOPED_TRACE(std::to_string(substeps) + " substeps: period off by " +
                      std::to_string(1e6 * errors.back()) + " ppm, energy lost " +

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/scene/catalog.h"
+#include "tests/core/pendulum.h"
 
 namespace huestep::reference {
 namespace {
@@ -18,20 +19,10 @@ Linkage linkageOf(const std::string& text) {
     return Linkage::find(worldOf(text)).value();
 }
 
-double agm(double a, double b) {
-    for (int i = 0; i < 8; ++i) {
-        const double mean = 0.5 * (a + b);
-        b = std::sqrt(a * b);
-        a = mean;
-    }
-    return a;
-}
-
 TEST(Linkage, APendulumIsStraightBelowItsPivotAfterAQuarterOfThePeriodOfTheClosedForm) {
     for (const int degrees : {30, 90, 150}) {
         const double start = degrees * std::numbers::pi / 180.0;
-        const double period =
-            2.0 * std::numbers::pi * std::sqrt(1.005 / 10.0) / agm(1.0, std::cos(0.5 * start));
+        const double period = test::pendulumPeriod(start);
         const LinkageSolution quarter =
             solveLinkage(linkageOf("pendulum:angle=" + std::to_string(degrees)), 0.25 * period);
         EXPECT_LT(quarter.change, 1e-12);

@@ -8,6 +8,7 @@
 
 #include "core/scene/catalog.h"
 #include "tools/metrics/scenes.h"
+#include "tools/metrics/soft_model.h"
 #include "tools/reference/linkage.h"
 
 namespace huestep::reference {
@@ -133,6 +134,26 @@ TEST(ReferenceWorld, SoftRowsGiveWayByTheFloorLaw) {
     const std::vector<Body>& stack = rests->ticks.back();
     EXPECT_NEAR(0.5 - stack[1].position.y, ground, 1e-6);
     EXPECT_NEAR(1.0 - (stack[2].position.y - stack[1].position.y), second, 1e-6);
+}
+
+// The frequencies as the physics page has them, in numbers: metrics and reference take them from
+// the product, so a wrong constant there would move the truth with it.
+TEST(SoftRows, HaveAnEighthOfTheSubstepRateForContactsAndAQuarterForJoints) {
+    for (const std::uint32_t substeps : {1u, 4u, 32u}) {
+        Scene scene = sceneOf("stack:n=2");
+        scene.substeps = substeps;
+        const WorldInfo info = worldOf(scene).info();
+        const double rate = 60.0 * substeps;  // Hz: 240 at n = 4, so contacts have 30 and joints 60
+        const SoftRows rows = SoftRows::ofProduct(info);
+        EXPECT_NEAR(rows.contactHertz, rate / 8.0, 1e-5 * rate);
+        EXPECT_NEAR(rows.groundHertz, rate / 4.0, 1e-5 * rate) << "what does not move: twice that";
+        EXPECT_NEAR(rows.jointHertz, rate / 4.0, 1e-5 * rate);
+        const tools::SoftOmegas omegas = tools::softOmegas(info);
+        const double round = 2.0 * std::numbers::pi * rate;
+        EXPECT_NEAR(omegas.contact, round / 8.0, 1e-5 * round);
+        EXPECT_NEAR(omegas.ground, round / 4.0, 1e-5 * round);
+        EXPECT_NEAR(omegas.joint, round / 4.0, 1e-5 * round);
+    }
 }
 
 TEST(ReferenceWorld, RefusesWhatItDoesNotKnow) {
