@@ -29,12 +29,13 @@ void OwnCommands::resend(std::uint64_t lastSequence, Statistics& counts) {
     for (Pending& pending : m_pending) {
         if (pending.command.sequence <= lastSequence) continue;
         pending.seenAt.reset();
+        pending.tick = 0;  // long past, or not of this start of the server
         if (std::exchange(pending.sent, false)) ++counts.commandsResent;
     }
     m_nextSequence = std::max(m_nextSequence, lastSequence + 1);
 }
 
-Status OwnCommands::ask(Action action, Instant now, Statistics& counts) {
+Status OwnCommands::ask(Action action, std::uint64_t tick, Instant now, Statistics& counts) {
     if (m_pending.size() >= maxPendingCommands) {
         return Error{std::to_string(m_pending.size()) + " own commands wait for their commit"};
     }
@@ -49,7 +50,9 @@ Status OwnCommands::ask(Action action, Instant now, Statistics& counts) {
                      std::to_string(m_maxQueuedBytes)};
     }
     ++m_nextSequence;
-    m_pending.push_back({std::move(command), now, bytes, std::nullopt});
+    // The server keeps the order of a player's commands, so it would hold this one back too.
+    if (tick != 0 && !m_pending.empty()) tick = std::max(tick, m_pending.back().tick);
+    m_pending.push_back({std::move(command), tick, now, bytes, std::nullopt});
     ++counts.commandsSent;
     return Done{};
 }
@@ -70,15 +73,25 @@ void OwnCommands::send(std::vector<protocol::Message>& out) {
         underWayBytes += pending.bytes;
         if (underWay > m_maxQueuedCommands || underWayBytes > m_maxQueuedBytes) break;
         if (std::exchange(pending.sent, true)) continue;
-        if (intent.commands.size() == m_maxCommandsPerIntent ||
-            (bytes + pending.bytes > room && !intent.commands.empty())) {
+        if (!intent.commands.empty() &&
+            (intent.commands.size() == m_maxCommandsPerIntent || intent.tick != pending.tick ||
+             bytes + pending.bytes > room)) {
             out.emplace_back(std::exchange(intent, {}));
             bytes = 0;
         }
         bytes += pending.bytes;
+        intent.tick = pending.tick;
         intent.commands.push_back(pending.command);
     }
     if (!intent.commands.empty()) out.emplace_back(std::move(intent));
+}
+
+void OwnCommands::expected(std::uint64_t tick, bool next, std::vector<Command>& out) const {
+    for (const Pending& pending : m_pending) {
+        if (pending.seenAt || pending.tick == 0) continue;
+        const bool due = pending.tick == tick || (next && pending.tick < tick);
+        if (due) out.push_back(pending.command);
+    }
 }
 
 void OwnCommands::applied(const protocol::Frame& frame, std::span<const CommandOutcome> outcomes,
@@ -106,7 +119,7 @@ void OwnCommands::seen(std::uint64_t sequence, std::uint64_t tick, Instant now,
     m_movedAt = tick;
     if (std::exchange(pending->counted, true)) return;
     ++counts.commandsSeen;
-    noteLatency(static_cast<double>(now - pending->asked) * 1e-9);
+    noteLatency(static_cast<double>(now - pending->given) * 1e-9);
 }
 
 void OwnCommands::noteLatency(double seconds) {
@@ -157,7 +170,7 @@ void OwnCommands::repeatOldest(std::uint64_t tick, std::uint64_t patience,
     if (underWay && tick < m_movedAt + patience) return;
     m_movedAt = tick;
     if (!underWay) return;
-    out.emplace_back(protocol::Intent{{oldest->command}, std::nullopt});
+    out.emplace_back(protocol::Intent{{oldest->command}, std::nullopt, oldest->tick});
     ++counts.commandsResent;
 }
 

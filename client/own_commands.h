@@ -29,10 +29,15 @@ class OwnCommands {
     /// A seat was taken: the one of before, whose commands go on, or a new one.
     void welcomed(const protocol::Welcome& welcome, bool sameSeat, Statistics& counts);
 
-    /// Takes an action as the player's next command. A sentence, and nothing done: too many wait
-    /// for their commit, or no Intent may hold this one (its size, its lists or its numbers are
-    /// beyond the protocol's limits).
-    Status ask(Action action, Instant now, Statistics& counts);
+    /// Takes an action as the player's next command, which asks for the frame of `tick` (0: for
+    /// none; see `protocol::Intent`) or, where the one before it asks for a later, that. A
+    /// sentence, and nothing done: too many wait for their commit, or no Intent may hold this one
+    /// (its size, its lists or its numbers are beyond the protocol's limits).
+    Status ask(Action action, std::uint64_t tick, Instant now, Statistics& counts);
+
+    /// Appends the commands to expect in the frame of `tick`, which no frame has shown yet: those
+    /// that asked for it, and in the `next` frame to come also those that came too late for theirs.
+    void expected(std::uint64_t tick, bool next, std::vector<Command>& out) const;
 
     /// Appends the Intents that may go out now.
     void send(std::vector<protocol::Message>& out);
@@ -60,7 +65,8 @@ class OwnCommands {
  private:
     struct Pending {
         Command command;
-        Instant asked = 0;
+        std::uint64_t tick = 0;  ///< asked for; 0: none
+        Instant given = 0;
         std::size_t bytes = 0;                ///< in an Intent
         std::optional<std::uint64_t> seenAt;  ///< tick of the frame that had it, or a later one
         bool sent = false;                    ///< over this connection or, ordered, an earlier one

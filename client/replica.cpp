@@ -19,7 +19,11 @@ std::string shortened(const std::string& text) {
 
 }  // namespace
 
-Replica::Replica(ReplicaConfig config) : m_config(std::move(config)) {}
+Replica::Replica(ReplicaConfig config) : m_config(std::move(config)) {
+    // Whoever watches has nothing to see at once.
+    const bool predicts = m_config.prediction && m_config.role == protocol::Role::Player;
+    if (predicts) m_prediction.emplace(std::move(*m_config.prediction));
+}
 
 void Replica::connected(Instant) {
     m_state = State::Greeting;
@@ -32,9 +36,9 @@ void Replica::connected(Instant) {
     hello.session = m_config.session;
     hello.role = m_config.role;
     hello.resume = m_token;
-    if (m_world) {
-        hello.haveTick = m_world->tick();
-        hello.haveHash = m_world->motionRoot();
+    if (m_timeline) {
+        hello.haveTick = m_timeline->confirmed();
+        hello.haveHash = m_timeline->confirmedRoot();
     }
     send(std::move(hello));
 }
@@ -49,7 +53,7 @@ Status Replica::receive(protocol::Message message, Instant now) {
     using namespace protocol;
     if (m_state == State::Apart) return Done{};
     if (const auto* bye = std::get_if<Bye>(&message)) return on(*bye);
-    if (const auto* ping = std::get_if<Ping>(&message)) return on(*ping);
+    if (const auto* ping = std::get_if<Ping>(&message)) return on(*ping, now);
     if (m_state == State::Greeting) {
         if (const auto* welcome = std::get_if<Welcome>(&message)) return on(*welcome, now);
         return refuse(ByeReason::UnexpectedMessage, "the server's first message is no Welcome");
@@ -69,7 +73,7 @@ Status Replica::refuse(ByeReason reason, std::string sentence) {
     return Error{std::move(sentence)};
 }
 
-Status Replica::on(const protocol::Welcome& welcome, Instant) {
+Status Replica::on(const protocol::Welcome& welcome, Instant now) {
     ++m_statistics.connections;
     const bool sameSeat = m_token.has_value() && welcome.player == m_statistics.player;
     if (sameSeat) ++m_statistics.resumes;
@@ -83,8 +87,9 @@ Status Replica::on(const protocol::Welcome& welcome, Instant) {
     if (welcome.player != 0) m_token = welcome.resume;
     m_ticksPerSecond = welcome.ticksPerSecond;
     // The tail of frames, or a snapshot: the server's next message says which.
-    m_state = m_world ? State::Following : State::Waiting;
+    m_state = m_timeline ? State::Following : State::Waiting;
     m_commands.welcomed(welcome, sameSeat, m_statistics);
+    if (m_prediction) m_prediction->welcomed(welcome, now);
     return Done{};
 }
 
@@ -92,36 +97,42 @@ Status Replica::on(const protocol::Welcome& welcome, Instant) {
 
 Status Replica::on(const protocol::Frame& frame, Instant now) {
     if (m_state != State::Following) return Done{};  // a snapshot comes, and its own tail
-    if (frame.tick != m_world->tick()) {
+    if (frame.tick != m_timeline->confirmed()) {
         return refuse(ByeReason::UnexpectedMessage,
                       "frame of tick " + std::to_string(frame.tick) + " where tick " +
-                          std::to_string(m_world->tick()) + " is next");
+                          std::to_string(m_timeline->confirmed()) + " is next");
     }
     ++m_statistics.hashesCompared;
-    if (frame.previousRoot != m_world->motionRoot()) {
+    if (frame.previousRoot != m_timeline->confirmedRoot()) {
         diverged(frame);
         return Done{};
     }
-    m_world->step(frame.commands, m_config.resources);
+    if (m_prediction) {
+        m_prediction->confirm(*m_timeline, frame, m_config.resources);
+    } else {
+        m_timeline->confirm(frame.commands, m_config.resources);
+    }
     ++m_statistics.ticks;
-    m_commands.applied(frame, m_world->events().commands, now, m_statistics);
+    m_commands.applied(frame, m_timeline->outcomes(), now, m_statistics);
     noteCommitted(frame.committed);
     const auto patience = static_cast<std::uint64_t>(std::max(m_ticksPerSecond, 1.0f));
-    m_commands.repeatOldest(m_world->tick(), patience, m_outgoing, m_statistics);
-    if (m_world->tick() >= m_lastCheckpoint + m_config.checkpointEvery) {
-        m_lastCheckpoint = m_world->tick();
+    m_commands.repeatOldest(m_timeline->confirmed(), patience, m_outgoing, m_statistics);
+    if (m_timeline->confirmed() >= m_lastCheckpoint + m_config.checkpointEvery) {
+        m_lastCheckpoint = m_timeline->confirmed();
         protocol::Intent intent;
-        intent.checkpoint = protocol::Checkpoint{m_world->tick(), m_world->motionRoot()};
+        intent.checkpoint =
+            protocol::Checkpoint{m_timeline->confirmed(), m_timeline->confirmedRoot()};
         send(std::move(intent));
     }
     return Done{};
 }
 
 void Replica::diverged(const protocol::Frame& frame) {
+    m_timeline->retreat();  // to the tick that differs
     ++m_statistics.mismatches;
     protocol::DesyncReport report;
     report.tick = frame.tick;
-    report.mine = m_world->motionRoot();
+    report.mine = m_timeline->confirmedRoot();
     report.yours = frame.previousRoot;
     m_frozen = std::move(report);
     m_state = State::Waiting;
@@ -133,12 +144,13 @@ Status Replica::on(const protocol::HashNodes& nodes) {
     if (!m_frozen || nodes.tick != m_frozen->tick || m_frozen->body != 0) return Done{};
     // The first block that differs bounds the search; the snapshot will name body and field. Until
     // then, or if the server no longer has this tick, the block's first body stands in.
-    const std::vector<std::uint64_t> mine = m_world->motionLeaves();
+    const std::vector<std::uint64_t> mine = m_timeline->world().motionLeaves();
     for (std::size_t i = 0; i < nodes.leaves.size(); ++i) {
         const std::size_t block = nodes.first + i;
         if (block < mine.size() && mine[block] == nodes.leaves[i]) continue;
         const std::size_t place = block * 64;
-        if (place < m_world->bodies().size()) m_frozen->body = m_world->bodies()[place].id;
+        if (place < m_timeline->world().bodies().size())
+            m_frozen->body = m_timeline->world().bodies()[place].id;
         m_frozen->field = "block " + std::to_string(block) + " of 64 bodies";
         return Done{};
     }
@@ -202,7 +214,7 @@ void Replica::reportDifference(const World& theirs) {
     protocol::DesyncReport report = std::move(*m_frozen);
     m_frozen.reset();
     if (theirs.tick() == report.tick) {
-        const std::optional<Difference> difference = firstDifference(*m_world, theirs);
+        const std::optional<Difference> difference = firstDifference(m_timeline->world(), theirs);
         if (difference) {
             report.body = difference->body;
             // A body's own fields go by their names; others say what of the body's it is.
@@ -221,12 +233,13 @@ void Replica::reportDifference(const World& theirs) {
 }
 
 void Replica::adopt(World world) {
-    if (m_world && world.tick() < m_world->tick()) {
-        m_statistics.rolledBack += m_world->tick() - world.tick();
+    if (m_timeline && world.tick() < m_timeline->confirmed()) {
+        m_statistics.rolledBack += m_timeline->confirmed() - world.tick();
     }
-    m_world = std::move(world);
-    m_lastCheckpoint = m_world->tick();
-    m_commands.adopted(*m_world, m_statistics);
+    m_timeline.emplace(std::move(world));
+    if (m_prediction) m_prediction->adopted();
+    m_lastCheckpoint = m_timeline->confirmed();
+    m_commands.adopted(m_timeline->world(), m_statistics);
     ++m_statistics.snapshots;
     m_state = State::Following;
 }
@@ -237,7 +250,15 @@ Status Replica::act(Action action, Instant now) {
     if (m_state != State::Following || m_statistics.player == 0) {
         return Error{"this client does not play now"};
     }
-    return m_commands.ask(std::move(action), now, m_statistics);
+    const std::uint64_t tick =
+        m_prediction ? m_prediction->pacer().commandTick(m_timeline->head()) : 0;
+    return m_commands.ask(std::move(action), tick, now, m_statistics);
+}
+
+void Replica::advance(Instant now) {
+    if (!m_prediction || m_state != State::Following || m_statistics.player == 0) return;
+    if (const std::optional<protocol::Ping> ping = m_prediction->pacer().ask(now)) send(*ping);
+    m_prediction->advance(*m_timeline, m_commands, m_statistics.player, now, m_config.resources);
 }
 
 void Replica::leave() {
@@ -257,8 +278,9 @@ std::vector<protocol::Message> Replica::takeOutgoing() {
     return std::exchange(m_outgoing, {});
 }
 
-Status Replica::on(const protocol::Ping& ping) {
+Status Replica::on(const protocol::Ping& ping, Instant now) {
     if (!ping.reply) send(protocol::Ping{ping.nonce, true});
+    if (ping.reply && m_prediction) m_prediction->pacer().answered(ping, now);
     return Done{};
 }
 
@@ -272,10 +294,11 @@ Status Replica::on(const protocol::Bye& bye) {
 
 Statistics Replica::statistics() const {
     Statistics out = m_statistics;
-    if (m_world) {
-        out.tick = m_world->tick();
-        out.root = m_world->motionRoot();
+    if (m_timeline) {
+        out.tick = m_timeline->confirmed();
+        out.root = m_timeline->confirmedRoot();
     }
+    if (m_prediction) out.prediction = m_prediction->figures(m_timeline ? &*m_timeline : nullptr);
     m_commands.describe(out);
     return out;
 }

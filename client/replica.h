@@ -15,7 +15,9 @@
 #include <vector>
 
 #include "client/own_commands.h"
+#include "client/prediction.h"
 #include "client/statistics.h"
+#include "client/timeline.h"
 #include "core/result.h"
 #include "core/world/world.h"
 #include "protocol/messages.h"
@@ -28,6 +30,8 @@ struct ReplicaConfig {
     protocol::Fingerprint fingerprint;
     StepResources resources;
     std::uint32_t checkpointEvery = 30;  ///< ticks from one Intent with a checkpoint to the next
+    /// For a player: run ahead of the frames by these rules. None: the world is where frames led.
+    std::optional<PredictionRules> prediction = std::nullopt;
 };
 
 class Replica {
@@ -52,7 +56,19 @@ class Replica {
     /// Messages to send, in order. Takes them out.
     std::vector<protocol::Message> takeOutgoing();
 
-    [[nodiscard]] const World* world() const { return m_world ? &*m_world : nullptr; }
+    /// Lets time pass: with prediction, steps the world to where it is to be now, and asks the
+    /// server how far it is. Call it before drawing, and at least once a tick; without prediction
+    /// it does nothing. A player acts on the world that this leaves.
+    void advance(Instant now);
+
+    /// The world to show, ahead of what is confirmed by what is predicted. Null: none yet.
+    [[nodiscard]] const World* world() const { return m_timeline ? &m_timeline->world() : nullptr; }
+    /// The same with what is confirmed and what is predicted told apart. Null: none yet.
+    [[nodiscard]] const Timeline* timeline() const { return m_timeline ? &*m_timeline : nullptr; }
+    /// Null: this client does not predict.
+    [[nodiscard]] const Prediction* prediction() const {
+        return m_prediction ? &*m_prediction : nullptr;
+    }
     [[nodiscard]] bool following() const { return m_state == State::Following; }
     [[nodiscard]] PlayerId player() const { return m_statistics.player; }
     [[nodiscard]] std::uint64_t committed() const { return m_committed; }
@@ -83,7 +99,7 @@ class Replica {
     Status on(protocol::SnapshotChunk chunk);
     Status on(const protocol::SnapshotEnd& end);
     Status on(const protocol::HashNodes& nodes);
-    Status on(const protocol::Ping& ping);
+    Status on(const protocol::Ping& ping, Instant now);
     Status on(const protocol::Bye& bye);
 
     Status refuse(protocol::ByeReason reason, std::string sentence);
@@ -96,7 +112,8 @@ class Replica {
 
     ReplicaConfig m_config;
     State m_state = State::Apart;
-    std::optional<World> m_world;
+    std::optional<Timeline> m_timeline;
+    std::optional<Prediction> m_prediction;
     /// Set while the world is frozen by a mismatch: its tick and both roots.
     std::optional<protocol::DesyncReport> m_frozen;
     std::optional<Incoming> m_incoming;

@@ -1,4 +1,5 @@
-/// A client in virtual time: a replica, a bot, a splitter, and a record of what it saw.
+/// A client in virtual time: a replica, a bot, a splitter, and a record of what it saw. Beside one
+/// that predicts runs a world which only frames step: see `checkPrediction`.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +7,12 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "client/bot.h"
 #include "client/replica.h"
@@ -39,6 +43,26 @@ class ClientProcess {
     void disconnected() {
         m_splitter.reset();
         m_replica.disconnected();
+    }
+
+    /// Lets time pass.
+    void advance(Instant now) {
+        m_replica.advance(now);
+        if (m_replica.prediction()) act(now);
+    }
+
+    /// The oracle of prediction: the world that is shown is what the frames led to, stepped by
+    /// the commands that it claims to be predicted with, and by nothing else.
+    void checkPrediction() const {
+        const client::Timeline* timeline = m_replica.timeline();
+        if (!m_replica.prediction() || !timeline || !m_framed) return;
+        ASSERT_LE(timeline->ahead(), 60u);
+        ASSERT_EQ(timeline->confirmed(), m_framed->tick());
+        ASSERT_EQ(timeline->confirmedRoot(), m_framed->motionRoot());
+        World expected = *m_framed;
+        for (std::uint32_t i = 0; i < timeline->ahead(); ++i) expected.step(timeline->predicted(i));
+        ASSERT_EQ(timeline->world().tick(), expected.tick());
+        ASSERT_EQ(timeline->world().fullRoot(), expected.fullRoot()) << "at " << expected.tick();
     }
 
     /// False: the client ends the connection.
@@ -75,15 +99,16 @@ class ClientProcess {
         const std::uint64_t ticks = m_replica.counts().ticks;
         if (!m_replica.receive(std::move(message), now)) return false;
         if (m_replica.bye()) return false;
-        const World* world = m_replica.world();
         if (m_replica.counts().snapshots != snapshots) {
             // A server that started again may have lost what was not committed, and be past it.
+            const World* world = m_replica.world();
             const std::uint64_t kept =
                 m_restarted ? std::min(world->tick(), m_replica.committed()) : world->tick();
             roots.erase(roots.upper_bound(kept), roots.end());
             m_uncommitted.erase(m_uncommitted.lower_bound(kept), m_uncommitted.end());
             roots[world->tick()] = world->motionRoot();
             m_restarted = false;
+            if (m_replica.prediction()) m_framed = *world;
         }
         if (copy && m_replica.counts().ticks != ticks) note(*copy);
         return true;
@@ -91,7 +116,9 @@ class ClientProcess {
 
     void note(protocol::Frame frame) {
         m_restarted = false;
-        roots[m_replica.world()->tick()] = m_replica.world()->motionRoot();
+        const client::Timeline& timeline = *m_replica.timeline();
+        roots[timeline.confirmed()] = timeline.confirmedRoot();
+        if (m_framed) m_framed->step(frame.commands);
         const std::uint64_t committed = frame.committed;
         frame.committed = 0;
         m_uncommitted[frame.tick] = protocol::encode(protocol::Message{frame});
@@ -102,9 +129,10 @@ class ClientProcess {
 
     void act(Instant now) {
         const World* world = m_replica.world();
+        if (!playing || !world || !m_replica.following()) return;
         const std::uint64_t ticks = m_replica.counts().ticks;
-        if (!playing || !world || !m_replica.following() || ticks == m_actedAt) return;
-        m_actedAt = ticks;
+        const std::uint64_t stage = m_replica.prediction() ? world->tick() : ticks;
+        if (std::exchange(m_actedAt, stage) == stage) return;
         BodyId body = 0;
         for (const PlayerRecord& player : world->players()) {
             if (player.id == m_replica.player()) body = player.body;
@@ -118,6 +146,7 @@ class ClientProcess {
     client::Replica m_replica;
     std::unique_ptr<client::Bot> m_bot;
     std::optional<protocol::FrameSplitter> m_splitter;
+    std::optional<World> m_framed;  ///< stepped by frames alone, from the last snapshot
     std::map<std::uint64_t, std::vector<std::byte>> m_uncommitted;
     std::uint64_t m_actedAt = 0;
     std::uint32_t m_epoch = 0;

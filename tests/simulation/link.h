@@ -19,6 +19,9 @@ struct LinkWeather {
     Instant delay = 20 * ms;
     Instant jitter = 15 * ms;
     std::uint64_t corruptOnceIn = 0;  ///< pieces; 0: never
+    /// Pieces; a lost one is sent again by TCP after `resendAfter`, and all behind it wait.
+    std::uint64_t loseOnceIn = 0;
+    Instant resendAfter = 200 * ms;
 };
 
 class Link {
@@ -26,7 +29,8 @@ class Link {
     void send(std::span<const std::byte> bytes, Instant now, const LinkWeather& weather,
               Dice& dice) {
         if (bytes.empty()) return;
-        const Instant due = now + weather.delay + dice.between(0, weather.jitter);
+        Instant due = now + weather.delay + dice.between(0, weather.jitter);
+        while (dice.once(weather.loseOnceIn)) due += weather.resendAfter;
         m_lastDue = std::max(m_lastDue, due);  // TCP keeps the order
         m_flying.push_back({{bytes.begin(), bytes.end()}, m_lastDue});
         m_unsent += bytes.size();

@@ -39,8 +39,10 @@ class Simulation {
     Weather weather;
     protocol::MemoryStore disk;
 
-    std::size_t addClient(protocol::Role role, std::unique_ptr<client::Bot> bot) {
-        client::ReplicaConfig config{m_setup.session, role, m_setup.fingerprint, {}, 30};
+    std::size_t addClient(protocol::Role role, std::unique_ptr<client::Bot> bot,
+                          std::optional<client::PredictionRules> prediction = std::nullopt) {
+        client::ReplicaConfig config{m_setup.session,      role, m_setup.fingerprint, {}, 30,
+                                     std::move(prediction)};
         m_seats.push_back({std::make_unique<ClientProcess>(config, std::move(bot)), {}, 0, 0});
         return m_seats.size() - 1;
     }
@@ -143,6 +145,10 @@ class Simulation {
         if (m_dice.once(weather.breakOnceIn)) return cut(seat, m_dice.between(1, 500) * ms);
         Wire& wire = *seat.wire;
         server::Hub& hub = m_server->hub();
+        seat.client->advance(m_now);
+        if (m_dice.once(seat.client->replica().prediction() ? 50 : 0)) {
+            seat.client->checkPrediction();
+        }
         wire.up.send(seat.client->output(), m_now, weather.link, m_dice);
         for (const auto& piece : wire.up.receive(m_now, 1u << 20, weather.link, m_dice)) {
             hub.receive(wire.id, piece, m_now);
@@ -204,10 +210,10 @@ class Simulation {
         if (!m_server) return false;
         const World& world = m_server->session().world();
         return std::all_of(m_seats.begin(), m_seats.end(), [&](const Seat& seat) {
-            const World* theirs = seat.client->replica().world();
+            const client::Timeline* theirs = seat.client->replica().timeline();
             if (!theirs || !seat.client->replica().following()) return false;
-            const auto root = m_server->session().rootAt(theirs->tick());
-            return theirs->tick() + 30 >= world.tick() && root == theirs->motionRoot();
+            const auto root = m_server->session().rootAt(theirs->confirmed());
+            return theirs->confirmed() + 30 >= world.tick() && root == theirs->confirmedRoot();
         });
     }
 
