@@ -2,6 +2,7 @@
 
 #include <uv.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <optional>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::uint64_t houseMs = 50;
 constexpr std::uint64_t progressMs = 1'000;
+constexpr std::uint64_t longestWaitMs = 20;  // of a client that predicts or lags
 
 Destination destinationOf(const PlayerConfig& config, protocol::Address address) {
     Destination out;
@@ -46,8 +48,14 @@ class Life {
     Life(PlayerConfig config, protocol::Address address)
         : m_config(std::move(config)),
           m_executor(m_config.threads > 1 ? std::make_unique<Executor>(m_config.threads) : nullptr),
-          m_replica(ReplicaConfig{
-              m_config.session, m_config.role, m_config.fingerprint, {m_executor.get()}}) {
+          m_replica(ReplicaConfig{m_config.session,
+                                  m_config.role,
+                                  m_config.fingerprint,
+                                  {m_executor.get()},
+                                  30,
+                                  m_config.prediction}),
+          m_in(m_config.lag),
+          m_out(LagRules{m_config.lag.delay, m_config.lag.jitter, m_config.lag.seed + 1}) {
         if (!m_config.bot) m_config.bot = makeIdleBot();
         const int opened = uv_loop_init(&m_loop);
         if (opened != 0) {
@@ -57,15 +65,16 @@ class Life {
         m_connection = std::make_unique<Connection>(
             m_loop, destinationOf(m_config, std::move(address)),
             Connection::Events{[this] { connected(); },
-                               [this](protocol::Message m) { message(std::move(m)); },
+                               [this](protocol::Message m) { arrived(std::move(m)); },
                                [this] { idle(); }, [this](const std::string& why) { lost(why); },
                                [this](const std::string& why) {
                                    fail("no connection to " + m_config.address + ": " + why);
                                }});
         uv_timer_init(&m_loop, &m_house);
+        uv_timer_init(&m_loop, &m_beat);
         uv_signal_init(&m_loop, &m_interrupt);
         uv_signal_init(&m_loop, &m_terminate);
-        m_house.data = m_interrupt.data = m_terminate.data = this;
+        m_house.data = m_beat.data = m_interrupt.data = m_terminate.data = this;
     }
     ~Life() {
         if (m_connection) uv_loop_close(&m_loop);
@@ -79,6 +88,7 @@ class Life {
         uv_timer_start(
             &m_house, [](uv_timer_t* timer) { static_cast<Life*>(timer->data)->house(); }, houseMs,
             houseMs);
+        if (m_config.lag.any() || m_replica.prediction()) scheduleBeat(1);
         if (m_config.handleSignals) {
             const auto onSignal = [](uv_signal_t* handle, int) {
                 static_cast<Life*>(handle->data)->leave();
@@ -118,13 +128,49 @@ class Life {
         m_connection->drop("the server says: " + bye.text);
     }
 
+    void arrived(protocol::Message m) {
+        if (!m_config.lag.any()) return message(std::move(m));
+        m_in.put(std::move(m), uv_hrtime());
+    }
+
+    /// What is to happen at its time, whatever arrives: held messages, and the predicted world.
+    void beat() {
+        const Instant now = uv_hrtime();
+        bool any = false;
+        while (std::optional<protocol::Message> held = m_in.take(now)) {
+            any = true;
+            message(std::move(*held));
+            if (m_ended) return;
+        }
+        m_replica.advance(now);
+        if (any || m_replica.prediction()) idle();
+        flush();
+        if (!m_ended) scheduleBeat(m_config.lag.any() ? 1 : msToNextTick(now));
+    }
+
+    [[nodiscard]] std::uint64_t msToNextTick(Instant now) const {
+        if (!m_replica.following()) return longestWaitMs;
+        const Pacer& pacer = m_replica.prediction()->pacer();
+        const Instant due = pacer.timeOf(m_replica.timeline()->head() + 1);
+        const std::uint64_t wait = due > now ? (due - now + 999'999) / 1'000'000 : 0;
+        return std::clamp<std::uint64_t>(wait, 1, longestWaitMs);
+    }
+
+    void scheduleBeat(std::uint64_t milliseconds) {
+        uv_timer_start(
+            &m_beat, [](uv_timer_t* timer) { static_cast<Life*>(timer->data)->beat(); },
+            milliseconds, 0);
+    }
+
     /// Everything that arrived is applied: the bot sees the newest world, once.
     void idle() {
         const World* world = m_replica.world();
         if (m_ended || !world || !m_replica.following()) return;
-        const std::uint64_t ticks = m_replica.counts().ticks;
-        if (m_config.ticks != 0 && ticks >= m_config.ticks) return leave();
-        if (ticks == m_botTicks) return;
+        const std::uint64_t played = m_replica.counts().ticks;
+        if (m_config.ticks != 0 && played >= m_config.ticks) return leave();
+        // A predicted world goes on between frames, and is at a tick but once.
+        const std::uint64_t ticks = played + m_replica.timeline()->ahead();
+        if (ticks <= m_botTicks) return;
         m_botTicks = ticks;
         for (Action& action : m_config.bot->act({*world, m_replica.player(), ownBody(), ticks})) {
             const Status asked = m_replica.act(std::move(action), uv_hrtime());
@@ -168,6 +214,8 @@ class Life {
 
     void lost(const std::string& why) {
         m_stateAt = 0;
+        m_in.clear();
+        m_out.clear();
         m_replica.disconnected();
         if (m_apartSince == 0) m_apartSince = uv_hrtime();
         if (!std::exchange(m_toldLoss, true)) {
@@ -212,6 +260,9 @@ class Life {
                         m_config.address + ": " + reason());
         m_replica.leave();
         flush();
+        while (std::optional<protocol::Message> held = m_out.take(~Instant{0})) {
+            m_connection->send(*held);  // its Bye, which has no time to wait
+        }
         end();
     }
 
@@ -225,14 +276,21 @@ class Life {
         m_ended = true;
         m_connection->stop();
         uv_close(reinterpret_cast<uv_handle_t*>(&m_house), nullptr);
+        uv_close(reinterpret_cast<uv_handle_t*>(&m_beat), nullptr);
         uv_close(reinterpret_cast<uv_handle_t*>(&m_interrupt), nullptr);
         uv_close(reinterpret_cast<uv_handle_t*>(&m_terminate), nullptr);
     }
 
     void flush() {
-        for (const protocol::Message& message : m_replica.takeOutgoing()) {
-            m_connection->send(message);
+        const Instant now = uv_hrtime();
+        for (protocol::Message& message : m_replica.takeOutgoing()) {
+            if (m_config.lag.any()) {
+                m_out.put(std::move(message), now);
+            } else {
+                m_connection->send(message);
+            }
         }
+        while (std::optional<protocol::Message> held = m_out.take(now)) m_connection->send(*held);
     }
 
     void notice(const std::string& sentence) {
@@ -249,9 +307,12 @@ class Life {
     PlayerConfig m_config;
     std::unique_ptr<Executor> m_executor;
     Replica m_replica;
+    Lag m_in;
+    Lag m_out;
     uv_loop_t m_loop{};
     std::unique_ptr<Connection> m_connection;
     uv_timer_t m_house{};
+    uv_timer_t m_beat{};  ///< of a client that predicts or lags
     uv_signal_t m_interrupt{};
     uv_signal_t m_terminate{};
     Instant m_apartSince = 0;  ///< 0: playing

@@ -18,9 +18,11 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "client/bot.h"
+#include "client/lag.h"
 #include "client/lookup.h"
 #include "client/replica.h"
 #include "core/result.h"
@@ -44,6 +46,10 @@ struct PlayerConfig {
     /// A connection over which nothing comes for so long, or while waiting for the session's state
     /// nothing of it, is given up and made anew.
     double silenceSeconds = 10.0;
+    /// Run ahead of the frames by these rules; the bot then acts on the predicted world.
+    std::optional<PredictionRules> prediction;
+    /// Makes the line longer, for trying; in both directions alike.
+    LagRules lag;
     Resolve resolve = askSystem;
     /// Called once a second with the numbers so far; may be empty.
     std::function<void(const Statistics&)> onProgress;

@@ -7,6 +7,15 @@
 ///  - whatever follows a snapshot of tick T starts with frame T: while one is awaited, frames are
 ///    let go;
 ///  - own commands count once each: see `OwnCommands`.
+///
+/// What a game does with it (docs/prediction.md), `now` being its clock:
+///
+///     replica.connected(now);                            // and what takeOutgoing() has, is sent
+///     replica.receive(message, now);                     // whatever comes, as it comes
+///     replica.advance(now);                              // once a picture: then
+///     replica.act(Grab{body, point, target}, now);       //   what the player does,
+///     for (Message& m : replica.takeOutgoing()) send(m);
+///     draw(*replica.world(), replica.prediction());      //   each body at smoothing().posed(…)
 #pragma once
 
 #include <cstdint>

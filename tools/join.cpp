@@ -22,8 +22,16 @@ struct Options {
     std::string session;
     std::string bot = "wander";
     std::uint64_t ticks = 0;
+    bool predict = false;
+    std::optional<std::uint32_t> inputDelay;
+    std::string guess = "none";
+    std::uint32_t lagMs = 0;
+    std::uint32_t jitterMs = 0;
     bool json = false;
 };
+
+// Pushes of others that are expected to go on: about half of what a bot's take.
+constexpr std::uint32_t guessedTicks = 6;
 
 Result<std::unique_ptr<client::Bot>> makeBot(const std::string& text) {
     if (text == "idle") return client::makeIdleBot();
@@ -37,6 +45,26 @@ Result<std::unique_ptr<client::Bot>> makeBot(const std::string& text) {
     return Error{"--bot: '" + text + "' is none of wander, idle and script:FILE"};
 }
 
+Result<std::optional<client::PredictionRules>> rulesOf(const Options& options) {
+    if (options.guess != "none" && options.guess != "pushes")
+        return Error{"--guess: '" + options.guess + "' is neither none nor pushes"};
+    const bool meant = options.inputDelay || options.guess != "none";
+    if (!options.predict && meant)
+        return Error{"--input-delay and --guess are for --predict alone"};
+    if (!options.predict) return std::optional<client::PredictionRules>();
+    client::PredictionRules rules;
+    rules.pacing.inputDelay = options.inputDelay;
+    if (options.guess == "pushes") rules.guess = client::pushesGoOn(guessedTicks);
+    rules.clock = nanoseconds;
+    return std::optional(std::move(rules));
+}
+
+client::LagRules lagOf(const Options& options) {
+    constexpr client::Instant millisecond = 1'000'000;
+    // Half on either way.
+    return {options.lagMs * millisecond / 2, options.jitterMs * millisecond / 2, 1};
+}
+
 double perSecond(std::uint64_t amount, double seconds) {
     return seconds > 0.0 ? static_cast<double>(amount) / seconds : 0.0;
 }
@@ -46,6 +74,49 @@ void showProgress(const client::Statistics& now) {
                  static_cast<unsigned long long>(now.tick),
                  static_cast<unsigned long long>(now.hashesCompared),
                  static_cast<unsigned long long>(now.mismatches));
+}
+
+double mean(double sum, std::uint64_t count) {
+    return count == 0 ? 0.0 : sum / static_cast<double>(count);
+}
+
+Json asJson(const client::PredictionFigures& p) {
+    return {{"lead_ticks", p.lead},
+            {"input_delay_ticks", p.inputDelay},
+            {"round_trip_s", p.roundTrip},
+            {"jitter_s", p.jitter},
+            {"ticks_predicted", p.predicted},
+            {"rollbacks", p.rollbacks},
+            {"depth_ticks",
+             {{"mean", mean(static_cast<double>(p.undone), p.rollbacks)}, {"max", p.deepest}}},
+            {"ticks_stepped_again", p.again},
+            {"rollback_ms",
+             {{"sum", 1e-6 * static_cast<double>(p.nanoseconds)},
+              {"mean", 1e-6 * mean(static_cast<double>(p.nanoseconds), p.rollbacks)},
+              {"max", 1e-6 * static_cast<double>(p.nanosecondsMost)}}},
+            {"error_m", {{"mean", mean(p.errorSum, p.rollbacks)}, {"max", p.errorMost}}},
+            {"commands_late", p.late}};
+}
+
+void printText(const client::PredictionFigures& p) {
+    const auto n = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::printf("prediction   %u ticks ahead, input delay %u; round trip %s ms, jitter %s ms\n",
+                p.lead, p.inputDelay, number(1e3 * p.roundTrip).c_str(),
+                number(1e3 * p.jitter).c_str());
+    std::printf(
+        "rollbacks    %llu of %llu ticks predicted; depth mean %s, max %u; %llu ticks stepped "
+        "again\n",
+        n(p.rollbacks), n(p.predicted),
+        number(mean(static_cast<double>(p.undone), p.rollbacks)).c_str(), p.deepest, n(p.again));
+    const double nanosecondsMean = mean(static_cast<double>(p.nanoseconds), p.rollbacks);
+    std::printf("             %s ms in all, mean %s ms, max %s ms each\n",
+                number(1e-6 * static_cast<double>(p.nanoseconds)).c_str(),
+                number(1e-6 * nanosecondsMean).c_str(),
+                number(1e-6 * static_cast<double>(p.nanosecondsMost)).c_str());
+    std::printf(
+        "             the body furthest off by %s m in the mean, %s m at most; %llu own "
+        "commands late\n",
+        number(mean(p.errorSum, p.rollbacks)).c_str(), number(p.errorMost).c_str(), n(p.late));
 }
 
 Json asJson(const Options& options, const client::Statistics& s, double seconds) {
@@ -73,6 +144,7 @@ Json asJson(const Options& options, const client::Statistics& s, double seconds)
                  {"bytes_a_second",
                   {{"in", perSecond(s.bytesIn, seconds)}, {"out", perSecond(s.bytesOut, seconds)}}},
                  {"latency_s", {{"median", s.latencyMedian}, {"p99", s.latencyP99}}}};
+    if (s.prediction) json["prediction"] = asJson(*s.prediction);
     if (s.lastDesync)
         json["last_desync"] = {{"tick", s.lastDesync->tick},
                                {"body", s.lastDesync->body},
@@ -91,6 +163,7 @@ void printText(const client::Statistics& s, double seconds) {
                 n(s.snapshots), n(s.resumes));
     std::printf("commands     %llu sent, %llu seen, %llu rejected\n", n(s.commandsSent),
                 n(s.commandsSeen), n(s.commandsRejected));
+    if (s.prediction) printText(*s.prediction);
     std::printf("bytes        in %.0f a second, out %.0f a second\n", perSecond(s.bytesIn, seconds),
                 perSecond(s.bytesOut, seconds));
     if (s.lastDesync)
@@ -104,6 +177,8 @@ void printText(const client::Statistics& s, double seconds) {
 }
 
 Answer join(const Options& options) {
+    Result<std::optional<client::PredictionRules>> rules = rulesOf(options);
+    if (!rules) return rules.error();
     Result<std::unique_ptr<client::Bot>> bot = makeBot(options.bot);
     if (!bot) return bot.error();
     const Result<protocol::Fingerprint> fingerprint = selfTest();
@@ -116,6 +191,8 @@ Answer join(const Options& options) {
     config.fingerprint = *fingerprint;
     config.bot = std::move(bot).value();
     config.ticks = options.ticks;
+    config.prediction = std::move(*rules);
+    config.lag = lagOf(options);
     config.stop = &interruptFlag();  // signals that come before the client has handlers of its own
     if (terminal) config.onProgress = showProgress;
     config.onNotice = [terminal](const std::string& sentence) {
@@ -151,6 +228,19 @@ void addJoin(Menu& menu) {
     sub->add_option("--bot", o->bot, "wander, idle or script:FILE (default: wander)");
     sub->add_option("--ticks", o->ticks, "Leave after so many ticks (default: at Ctrl-C)")
         ->transform(wholeNumber(1, 1'000'000'000));
+    sub->add_flag("--predict", o->predict,
+                  "Run ahead of the server by the round trip; tells what that took");
+    sub->add_option("--input-delay", o->inputDelay,
+                    "With --predict: ticks from an input to its tick (default: as the server says)")
+        ->transform(wholeNumber(0, 60));
+    sub->add_option("--guess", o->guess,
+                    "With --predict: what others do meanwhile, none or pushes: whoever pushed goes "
+                    "on (default: none)");
+    sub->add_option("--lag", o->lagMs,
+                    "Make the round trip so many ms longer, to try what a network would do")
+        ->transform(wholeNumber(0, 10'000));
+    sub->add_option("--jitter", o->jitterMs, "And by up to so many ms more, as it comes")
+        ->transform(wholeNumber(0, 10'000));
     sub->add_flag("--json", o->json, "Print one JSON document");
 }
 

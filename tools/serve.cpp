@@ -29,6 +29,10 @@ Result<server::HostConfig> configOf(const ServeOptions& options) {
     if (!options.listen.empty()) config.listen = options.listen;
     if (!options.data.empty()) config.data = options.data;
     config.open = options.open;
+    const Result<InputDelay> delay = parseInputDelay(options.inputDelay);
+    if (!delay) return Error{"--" + delay.error().message};
+    config.limits.inputDelay = delay->least;
+    config.limits.maxInputDelay = delay->most;
     if (options.sessions.empty())
         return Error{"--session: give at least one, as in --session play=sandbox"};
     for (const std::string& text : options.sessions) {
@@ -96,6 +100,9 @@ void addServe(Menu& menu) {
                     "HOST:PORT for a page that shows the sessions; port 0: any free one");
     sub->add_option("--data", o->data, "Folder of the journals (default: huestep-data)");
     sub->add_option("--session", o->sessions, "NAME=SCENE; may be given several times");
+    sub->add_option("--input-delay", o->inputDelay,
+                    "Ticks from an input to its frame: N, or LOW-HIGH between which clients that "
+                    "predict adapt to their round trip, or adaptive: 0-12 (default: 0)");
     sub->add_flag("--open", o->open, "Let anyone join without a ticket (there are none yet)");
 }
 

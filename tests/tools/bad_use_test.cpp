@@ -88,7 +88,12 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"serve"}, "--session"}, Misuse{{"serve", "--session", "play"}, "NAME=SCENE"},
         Misuse{{"serve", "--session", "play=nothing"}, "nothing"},
         Misuse{{"serve", "--config", "/nowhere/x.toml"}, "/nowhere/x.toml: "},
+        Misuse{{"serve", "--session", "play=small", "--input-delay", "61"}, "'61'"},
+        Misuse{{"serve", "--session", "play=small", "--input-delay", "9-3"}, "'9-3'"},
         Misuse{{"join", "127.0.0.1:7777"}, "--session"},
+        Misuse{{"join", "127.0.0.1:7777", "--session", "s", "--input-delay", "3"}, "--predict"},
+        Misuse{{"join", "127.0.0.1:7777", "--session", "s", "--predict", "--guess", "tarot"},
+               "tarot"},
         Misuse{{"join", "127.0.0.1:7777", "--session", "s", "--bot", "dance"}, "wander"},
         Misuse{{"join", "127.0.0.1:7777", "--session", "s", "--bot", "script:/nowhere/x"},
                "/nowhere/x"}));
@@ -121,6 +126,18 @@ TEST(BadInput, AnEmptyFolderIsNoJournal) {
     EXPECT_EQ(ended.status, 2);
     EXPECT_NE(ended.err.find("empty"), std::string::npos) << ended.err;
     EXPECT_TRUE(std::filesystem::is_empty(folder / "empty")) << "a reader must write nothing";
+}
+
+TEST(BadInput, AnInputDelayInAConfigFileIsRefusedWithItsLine) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "serve.toml";
+    for (const char* wrong : {"-1", "61", "\"4-2\"", "\"much\"", "true"}) {
+        std::ofstream(path) << "open = true\ninput-delay = " << wrong << "\n";
+        const Ended ended = huestep({"serve", "--config", path});
+        EXPECT_EQ(ended.status, 2);
+        EXPECT_NE(ended.err.find(path + ":2: "), std::string::npos) << ended.err;
+        EXPECT_NE(ended.err.find("input-delay"), std::string::npos) << ended.err;
+    }
 }
 
 TEST(BadInput, AConfigFileIsRefusedWithFileLineAndKey) {

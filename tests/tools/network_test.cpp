@@ -56,6 +56,43 @@ TEST(Session, ClientsAgreeAndTheJournalReplaysWithAnyThreads) {
     EXPECT_EQ(diff.status, 0) << diff.out << diff.err;
 }
 
+TEST(Session, ClientsThatPredictAgreeWithThoseThatDoNotAndTellWhatItTook) {
+    const TemporaryFolder folder;
+    Server server(folder / "data", "play=sandbox", "127.0.0.1:0", {"--input-delay", "1-4"});
+    const std::string address = server.address();
+    ASSERT_NE(address, "");
+    const auto lockstep = join(address, "play", {"--ticks", "240"});
+    const auto near = join(address, "play", {"--ticks", "240", "--predict"});
+    const auto far = join(address, "play",
+                          {"--ticks", "240", "--predict", "--lag", "150", "--jitter", "20",
+                           "--input-delay", "2", "--guess", "pushes"});
+    Json documents[3];
+    Process* clients[] = {lockstep.get(), near.get(), far.get()};
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_EQ(clients[i]->wait(60.0), 0) << clients[i]->err();
+        documents[i] = documentOf(clients[i]->out());
+        EXPECT_EQ(documents[i]["mismatches"], 0) << i;
+        EXPECT_GE(documents[i]["hashes_compared"], 240) << i;
+        EXPECT_GT(documents[i]["commands"]["seen"], 0) << i;
+    }
+    EXPECT_FALSE(documents[0].contains("prediction"));
+    const Json& close = documents[1]["prediction"];
+    EXPECT_GE(close["input_delay_ticks"], 1);
+    EXPECT_LE(close["input_delay_ticks"], 4);
+    const Json& late = documents[2]["prediction"];
+    EXPECT_EQ(late["input_delay_ticks"], 2);
+    EXPECT_GE(late["round_trip_s"], 0.15);
+    EXPECT_GT(late["rollbacks"], 0);
+    EXPECT_GT(late["depth_ticks"]["max"], 4);
+    EXPECT_LE(late["depth_ticks"]["max"], 60);
+    EXPECT_GT(late["rollback_ms"]["sum"], 0.0);
+    server.process().send(SIGTERM);
+    ASSERT_EQ(server.process().wait(20.0), 0) << server.process().err();
+    const Ended replay = huestep({"replay", folder / "data/play", "--threads", "2", "--json"});
+    EXPECT_EQ(replay.status, 0) << replay.out << replay.err;
+    EXPECT_EQ(documentOf(replay.out)["mismatches"], 0);
+}
+
 TEST(Session, ReplayFromASnapshotInItsMiddleComesToTheSameStateAsFromTheStart) {
     const TemporaryFolder folder;
     const std::string data = folder / "data";

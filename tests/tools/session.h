@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tests/tools/process.h"
 
@@ -11,9 +12,9 @@ namespace huestep::test {
 /// `huestep serve` with one session, on loopback; port 0 or the address of an earlier one.
 class Server {
  public:
-    Server(const std::string& data, const std::string& session, const std::string& address)
-        : m_process({huestepProgram, "serve", "--listen", address, "--data", data, "--session",
-                     session, "--open"}) {}
+    Server(const std::string& data, const std::string& session, const std::string& address,
+           const std::vector<std::string>& more = {})
+        : m_process(words(data, session, address, more)) {}
 
     /// Where it listens; empty if it does not say so in time.
     [[nodiscard]] std::string address() const {
@@ -34,6 +35,15 @@ class Server {
     [[nodiscard]] Process& process() { return m_process; }
 
  private:
+    static std::vector<std::string> words(const std::string& data, const std::string& session,
+                                          const std::string& address,
+                                          const std::vector<std::string>& more) {
+        std::vector<std::string> out = {huestepProgram, "serve",     "--listen", address, "--data",
+                                        data,           "--session", session,    "--open"};
+        out.insert(out.end(), more.begin(), more.end());
+        return out;
+    }
+
     Process m_process;
 };
 
