@@ -3,8 +3,10 @@
 #include <span>
 #include <string>
 
+#include "core/scene/catalog.h"
 #include "core/state/hash.h"
 #include "core/state/snapshot.h"
+#include "core/world/world.h"
 #include "protocol/scene_file.h"
 #include "protocol/schema_text.h"
 
@@ -31,6 +33,18 @@ std::uint64_t schemaHash(std::string_view text) {
 Fingerprint buildFingerprint() {
     static const std::uint64_t hash = schemaHash(std::string(sceneSchemaText) + messagesSchemaText);
     return {0, hash, (snapshotVersion << 16) | sceneVersion};
+}
+
+Result<Fingerprint> selfTest() {
+    constexpr int ticks = 120;
+    const Result<Scene> scene = sceneFromCatalog("mixed");
+    if (!scene) return scene.error();
+    Result<World> world = World::create(*scene);
+    if (!world) return world.error();
+    for (int tick = 0; tick < ticks; ++tick) world->step({});
+    Fingerprint fingerprint = buildFingerprint();
+    fingerprint.selfTest = world->fullRoot();
+    return fingerprint;
 }
 
 }  // namespace huestep::protocol

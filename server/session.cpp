@@ -195,13 +195,7 @@ std::vector<SharedSnapshot> Session::lentNow() {
 }
 
 void Session::noteDefinitions() {
-    const WorldInfo& info = m_world.info();
-    // Ids are never reused, so counters and counts together change with every coming and going.
-    const std::array<std::uint64_t, 4> mark{info.nextBody, info.nextShape, m_world.bodies().size(),
-                                            m_world.shapes().size()};
-    if (mark == m_definitionMark) return;
-    m_definitionMark = mark;
-    ++m_definitions;
+    if (m_definitionMark.note(m_world)) ++m_definitions;
 }
 
 }  // namespace huestep::server

@@ -13,6 +13,7 @@
 
 #include "core/scene/script.h"
 #include "core/world/world.h"
+#include "protocol/drawing.h"
 #include "protocol/journal.h"
 #include "protocol/messages.h"
 #include "server/command_queue.h"
@@ -122,7 +123,7 @@ class Session {
     Instant m_closedAt;
     std::optional<std::string> m_failure;
     std::uint32_t m_definitions = 1;
-    std::array<std::uint64_t, 4> m_definitionMark{};
+    protocol::DefinitionsMark m_definitionMark;
 };
 
 }  // namespace huestep::server

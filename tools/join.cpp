@@ -7,9 +7,9 @@
 #include <random>
 
 #include "client/player.h"
+#include "protocol/fingerprint.h"
 #include "tools/clock.h"
 #include "tools/command.h"
-#include "tools/fingerprint.h"
 #include "tools/interrupt.h"
 #include "tools/text.h"
 #include "tools/whole_number.h"
@@ -181,7 +181,7 @@ Answer join(const Options& options) {
     if (!rules) return rules.error();
     Result<std::unique_ptr<client::Bot>> bot = makeBot(options.bot);
     if (!bot) return bot.error();
-    const Result<protocol::Fingerprint> fingerprint = selfTest();
+    const Result<protocol::Fingerprint> fingerprint = protocol::selfTest();
     if (!fingerprint) return fingerprint.error();
 
     const bool terminal = isatty(STDERR_FILENO) != 0;

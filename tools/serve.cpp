@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <memory>
 
+#include "protocol/fingerprint.h"
 #include "server/host.h"
 #include "server/log.h"
 #include "server/web_endpoint.h"
 #include "tools/command.h"
-#include "tools/fingerprint.h"
 #include "tools/interrupt.h"
 #include "tools/scene_source.h"
 #include "tools/serve_config.h"
@@ -40,7 +40,7 @@ Result<server::HostConfig> configOf(const ServeOptions& options) {
         if (!session) return session.error();
         config.sessions.push_back(std::move(session).value());
     }
-    const Result<protocol::Fingerprint> fingerprint = selfTest();
+    const Result<protocol::Fingerprint> fingerprint = protocol::selfTest();
     if (!fingerprint) return fingerprint.error();
     config.fingerprint = *fingerprint;
     return config;

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "protocol/fingerprint.h"
 #include "protocol/journal.h"
 #include "protocol/log_store.h"
 #include "protocol/scene_file.h"
-#include "tools/fingerprint.h"
 
 namespace huestep::tools::stability {
 
@@ -88,7 +88,7 @@ class Recorder {
 
 Status writeJournal(protocol::LogStore& store, const Setup& setup, std::uint64_t snapshotAt,
                     std::uint64_t end) {
-    const Result<protocol::Fingerprint> fingerprint = selfTest();
+    const Result<protocol::Fingerprint> fingerprint = protocol::selfTest();
     if (!fingerprint) return fingerprint.error();
     const protocol::JournalIdentity identity{sessionName(setup), *fingerprint, 1};
     const Result<protocol::JournalContents> empty = protocol::readJournal(store);
