@@ -334,6 +334,9 @@ uv_loop_s* Host::loop() {
 const Hub& Host::hub() const {
     return m_inside->hub;
 }
+Hub& Host::hub() {
+    return m_inside->hub;
+}
 void Host::add(std::shared_ptr<HostPart> part) {
     m_inside->parts.push_back(std::move(part));
 }

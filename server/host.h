@@ -83,6 +83,8 @@ class Host {
     [[nodiscard]] uv_loop_s* loop();
     /// Sessions and counters.
     [[nodiscard]] const Hub& hub() const;
+    /// For parts through which clients come: as a transport uses it.
+    [[nodiscard]] Hub& hub();
 
     void add(std::shared_ptr<HostPart> part);  ///< before `run`
 

@@ -1,31 +1,54 @@
-# Writes OUT, a C++ source with the files of FOLDER as raw string literals.
+# Writes OUT, a C++ source with the files of FOLDER as raw string literals, and MODULES, a list of
+# name=file, as the assembler includes them.
 #
-# Text files only: the page has no binary files, and a literal that can be read in the debugger is
-# worth that rule. Run at build time, so that an edited file is embedded by the next build.
-file(GLOB files ${FOLDER}/*.html ${FOLDER}/*.css ${FOLDER}/*.js ${FOLDER}/*.svg)
-list(SORT files)
+# The page's own files are text: a literal that can be read in the debugger is worth that rule. Run
+# at build time, so that an edited file is embedded by the next build.
+file(GLOB texts ${FOLDER}/*.html ${FOLDER}/*.css ${FOLDER}/*.js ${FOLDER}/*.svg)
 set(types_html "text/html; charset=utf-8")
 set(types_css "text/css; charset=utf-8")
 set(types_js "text/javascript; charset=utf-8")
 set(types_svg "image/svg+xml")
+set(entries "")
+foreach(text ${texts})
+  get_filename_component(name ${text} NAME)
+  list(APPEND entries "${name}=${text}")
+endforeach()
+list(APPEND entries ${MODULES})
+list(SORT entries)
+list(LENGTH entries count)
 
 file(WRITE ${OUT}.new "// Made from client/web by server/web_assets.cmake.\n")
 file(APPEND ${OUT}.new "#include \"server/web_assets.h\"\n\n#include <algorithm>\n#include <array>\n\n")
+foreach(entry ${MODULES})
+  string(REGEX MATCH "^([^=]+)=(.*)$" parts ${entry})
+  set(file ${CMAKE_MATCH_2})
+  string(MAKE_C_IDENTIFIER "huestep_web_${CMAKE_MATCH_1}" symbol)
+  file(SIZE ${file} size)
+  file(APPEND ${OUT}.new "extern \"C\" const char ${symbol}[${size}];\n"
+    "__asm__(\".pushsection .rodata\\n.global ${symbol}\\n.hidden ${symbol}\\n${symbol}:\\n\"\n"
+    "        \".incbin \\\"${file}\\\"\\n.popsection\\n\");\n\n")
+endforeach()
 file(APPEND ${OUT}.new "namespace huestep::server {\n\nnamespace {\n\nusing namespace std::string_view_literals;\n\n")
-list(LENGTH files count)
 file(APPEND ${OUT}.new "const std::array<WebAsset, ${count}> assets{{\n")
-foreach(file ${files})
-  get_filename_component(name ${file} NAME)
-  get_filename_component(extension ${file} LAST_EXT)
+foreach(entry ${entries})
+  string(REGEX MATCH "^([^=]+)=(.*)$" parts ${entry})
+  set(name ${CMAKE_MATCH_1})
+  set(file ${CMAKE_MATCH_2})
+  if(name MATCHES "\\.wasm$")
+    string(MAKE_C_IDENTIFIER "huestep_web_${name}" symbol)
+    file(APPEND ${OUT}.new "    {\"${name}\"sv, \"application/wasm\"sv, {${symbol}, sizeof ${symbol}}, \"gzip\"sv},\n")
+    continue()
+  endif()
+  get_filename_component(extension ${name} LAST_EXT)
   string(SUBSTRING ${extension} 1 -1 extension)
   file(READ ${file} text)
   file(APPEND ${OUT}.new "    {\"${name}\"sv, \"${types_${extension}}\"sv, R\"huestepasset(")
   file(APPEND ${OUT}.new "${text}")
-  file(APPEND ${OUT}.new ")huestepasset\"sv},\n")
+  file(APPEND ${OUT}.new ")huestepasset\"sv, {}},\n")
 endforeach()
 file(APPEND ${OUT}.new "}};\n\n}  // namespace\n\n")
 file(APPEND ${OUT}.new "std::span<const WebAsset> webAssets() {\n    return assets;\n}\n\n")
 file(APPEND ${OUT}.new "const WebAsset* findWebAsset(std::string_view name) {\n    const auto at = std::lower_bound(\n        assets.begin(), assets.end(), name,\n        [](const WebAsset& asset, std::string_view wanted) { return asset.name < wanted; });\n    return at != assets.end() && at->name == name ? &*at : nullptr;\n}\n\n")
 file(APPEND ${OUT}.new "}  // namespace huestep::server\n")
-file(COPY_FILE ${OUT}.new ${OUT} ONLY_IF_DIFFERENT)
-file(REMOVE ${OUT}.new)
+# Written anew even if it reads the same: what it includes may have changed.
+file(RENAME ${OUT}.new ${OUT})

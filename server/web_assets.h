@@ -8,9 +8,10 @@
 namespace huestep::server {
 
 struct WebAsset {
-    std::string_view name;  ///< file name in client/web, such as "main.js"
-    std::string_view type;  ///< MIME type with charset
-    std::string_view body;  ///< UTF-8
+    std::string_view name;      ///< file name in client/web, such as "main.js"
+    std::string_view type;      ///< MIME type with charset
+    std::string_view body;      ///< UTF-8, or a WebAssembly module
+    std::string_view encoding;  ///< of the body, as HTTP names it; empty: as it is
 };
 
 /// All of them, sorted by name.

@@ -9,12 +9,14 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "protocol/codec.h"
 #include "server/token_bucket.h"
 #include "server/web_listener.h"
+#include "server/web_peer.h"
 #include "server/web_route.h"
 #include "server/web_viewer.h"
 
@@ -26,10 +28,12 @@ constexpr std::size_t chunkBytes = 16u << 10;  ///< of a page's file, a turn
 constexpr std::size_t headRoom = 2048;         ///< for the head of a reply
 
 /// To every reply. Nothing is loaded from elsewhere and no script stands in the page, so a name
-/// that found its way into the HTML could still run nothing.
+/// that found its way into the HTML could still run nothing. 'wasm-unsafe-eval' lets the page's
+/// scripts compile WebAssembly, and nothing else.
 constexpr std::array<std::pair<const char*, std::string_view>, 5> securityHeaders{{
     {"content-security-policy:",
-     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self'; "
+     "connect-src 'self'; "
      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
     {"x-content-type-options:", "nosniff"},
     {"referrer-policy:", "no-referrer"},
@@ -81,6 +85,8 @@ struct WebEndpoint::Inside {
         std::size_t sent = 0;
         const Session* session = nullptr;  ///< set: admitted as a viewer of it
         std::optional<WebViewer> viewer;
+        bool steps = false;  ///< admitted as a page that steps the world itself
+        std::optional<WebPeer> client;
     };
 
     Inside(Host& itsHost, WebConfig given);
@@ -98,6 +104,10 @@ struct WebEndpoint::Inside {
     unsigned refuseViewer(lws* wsi, const Peer& peer) const;
     int established(lws* wsi, Peer& peer);
     int writeView(lws* wsi, Peer& peer);
+    int establishedClient(lws* wsi, Peer& peer);
+    int receive(lws* wsi, Peer& peer, std::string_view bytes);
+    int writeClient(lws* wsi, Peer& peer);
+    void wakeClients(const Session* session);
     static void sayGoodbye(lws* wsi);
     void forget(lws* wsi);
     bool takeToken(const Peer& peer);
@@ -116,7 +126,7 @@ struct WebEndpoint::Inside {
     WebListener listener;
     lws_context* context = nullptr;
     lws_vhost* vhost = nullptr;
-    std::array<lws_protocols, 2> protocols{};
+    std::array<lws_protocols, 3> protocols{};
     lws_retry_bo_t liveness{};
     uv_timer_t* timer = nullptr;  ///< heartbeats, then the farewell; frees itself once closed
     std::map<lws*, Peer> peers;
@@ -181,6 +191,9 @@ Status WebEndpoint::Inside::makeContext() {
     };
     protocols[0].rx_buffer_size = 128;       // whatever a viewer sends is not read anyway
     protocols[0].tx_packet_size = 1u << 20;  // 0: sends are cut to the size above
+    protocols[1] = protocols[0];
+    protocols[1].name = "huestep-peer";
+    protocols[1].rx_buffer_size = 16u << 10;
     liveness.secs_since_valid_ping = config.limits.pingSeconds;
     liveness.secs_since_valid_hangup = config.limits.silenceSeconds;
 
@@ -238,13 +251,9 @@ int WebEndpoint::Inside::event(lws* wsi, lws_callback_reasons reason, std::strin
         case LWS_CALLBACK_ESTABLISHED:
             return established(wsi, peer);
         case LWS_CALLBACK_SERVER_WRITEABLE:
-            return writeView(wsi, peer);
-        case LWS_CALLBACK_RECEIVE: {
-            std::string why = "viewers only watch";
-            lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION,
-                             reinterpret_cast<unsigned char*>(why.data()), why.size());
-            return -1;
-        }
+            return peer.client ? writeClient(wsi, peer) : writeView(wsi, peer);
+        case LWS_CALLBACK_RECEIVE:
+            return receive(wsi, peer, in);
         case LWS_CALLBACK_WSI_DESTROY:
             forget(wsi);
             return 0;
@@ -294,6 +303,7 @@ bool WebEndpoint::Inside::writeHead(lws* wsi, const WebReply& reply) {
         if (!add(name, value)) return false;
     }
     if (!reply.location.empty() && !add("location:", reply.location)) return false;
+    if (!reply.encoding.empty() && !add("content-encoding:", reply.encoding)) return false;
     if (reply.status == 429 && !add("retry-after:", "1")) return false;
     return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
 }
@@ -327,24 +337,27 @@ int WebEndpoint::Inside::writeBody(lws* wsi, Peer& peer) {
 }
 
 std::size_t WebEndpoint::Inside::viewerCount() const {
-    return static_cast<std::size_t>(std::count_if(
-        peers.begin(), peers.end(), [](const auto& each) { return each.second.session; }));
+    return static_cast<std::size_t>(std::count_if(peers.begin(), peers.end(), [](const auto& each) {
+        return each.second.session || each.second.steps;
+    }));
 }
 
 /// The status of a refusal, or 0.
 unsigned WebEndpoint::Inside::refuseViewer(lws* wsi, const Peer& peer) const {
-    if (header(wsi, WSI_TOKEN_GET_URI) != viewPath) return 404;
+    const std::string path = header(wsi, WSI_TOKEN_GET_URI);
+    if (path != viewPath && path != peerPath) return 404;
     if (!sameOrigin(header(wsi, WSI_TOKEN_ORIGIN), header(wsi, WSI_TOKEN_HOST))) return 403;
-    const std::optional<std::string> name = sessionOf(wsi);
-    if (!name || !host.hub().find(*name)) return 404;
-    if (!peer.session && viewerCount() >= config.limits.viewers) return 503;
+    const std::optional<std::string> name = sessionOf(wsi);  // a client names it in its Hello
+    if (path == viewPath && (!name || !host.hub().find(*name))) return 404;
+    if (!peer.session && !peer.steps && viewerCount() >= config.limits.viewers) return 503;
     return 0;
 }
 
 int WebEndpoint::Inside::confirmUpgrade(lws* wsi, Peer& peer) {
     const unsigned status = takeToken(peer) ? refuseViewer(wsi, peer) : 429;
     if (status == 0) {
-        peer.session = host.hub().find(*sessionOf(wsi));
+        peer.steps = header(wsi, WSI_TOKEN_GET_URI) == peerPath;
+        if (!peer.steps) peer.session = host.hub().find(*sessionOf(wsi));
         return 0;
     }
     ++counters.refusedViewers;
@@ -353,6 +366,7 @@ int WebEndpoint::Inside::confirmUpgrade(lws* wsi, Peer& peer) {
 }
 
 int WebEndpoint::Inside::established(lws* wsi, Peer& peer) {
+    if (peer.steps) return establishedClient(wsi, peer);
     if (!peer.session) return -1;
     ++counters.viewersTotal;
     LogLine("viewer_came")
@@ -387,6 +401,60 @@ int WebEndpoint::Inside::writeView(lws* wsi, Peer& peer) {
     return 0;
 }
 
+// Pages that step the world themselves -----------------------------------------------------------
+
+int WebEndpoint::Inside::establishedClient(lws* wsi, Peer& peer) {
+    std::optional<WebPeer> client = WebPeer::accept(host.hub(), peer.address, uv_hrtime());
+    if (!client) {
+        ++counters.refusedViewers;
+        return -1;
+    }
+    ++counters.peersTotal;
+    peer.client.emplace(std::move(*client));
+    lws_callback_on_writable(wsi);
+    return 0;
+}
+
+int WebEndpoint::Inside::receive(lws* wsi, Peer& peer, std::string_view bytes) {
+    if (peer.client) {
+        peer.client->receive(std::as_bytes(std::span(bytes)), uv_hrtime());
+        lws_callback_on_writable(wsi);
+        return 0;
+    }
+    std::string why = "viewers only watch";
+    lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION,
+                     reinterpret_cast<unsigned char*>(why.data()), why.size());
+    return -1;
+}
+
+/// Called when the system has taken all that was written before.
+int WebEndpoint::Inside::writeClient(lws* wsi, Peer& peer) {
+    std::vector<unsigned char> message = peer.client->next(LWS_PRE, uv_hrtime());
+    if (message.size() > LWS_PRE) {
+        const std::size_t bytes = message.size() - LWS_PRE;
+        if (lws_write(wsi, message.data() + LWS_PRE, bytes, LWS_WRITE_BINARY) < 0) return -1;
+        lws_callback_on_writable(wsi);
+        return 0;
+    }
+    if (!peer.client->finished()) return 0;
+    std::string why = stopping ? "the server stops" : "";
+    lws_close_reason(wsi, stopping ? LWS_CLOSE_STATUS_GOINGAWAY : LWS_CLOSE_STATUS_NORMAL,
+                     reinterpret_cast<unsigned char*>(why.data()), why.size());
+    return -1;
+}
+
+/// Lets those of a session, or all, be asked to write, and ends those whose time is over.
+void WebEndpoint::Inside::wakeClients(const Session* session) {
+    const Instant now = uv_hrtime();
+    for (auto& [wsi, peer] : peers) {
+        if (!peer.client || (session && !peer.client->follows(*session))) continue;
+        lws_callback_on_writable(wsi);
+        if (peer.client->overdue(now)) {
+            lws_set_timeout(wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+        }
+    }
+}
+
 void WebEndpoint::Inside::forget(lws* wsi) {
     const auto at = peers.find(wsi);
     if (at == peers.end()) return;
@@ -407,11 +475,13 @@ WebEndpoint::Inside::Stream& WebEndpoint::Inside::streamOf(const Session& sessio
 }
 
 void WebEndpoint::Inside::afterTick(const Session& session) {
+    if (!stopping) wakeClients(&session);
     if (!stopping && streamOf(session).pace.take(uv_hrtime())) show(session);
 }
 
 /// A page tells a server that is gone from a session that stands still by what it hears.
 void WebEndpoint::Inside::heartbeat() {
+    wakeClients(nullptr);
     const Instant since = uv_hrtime() - config.limits.heartbeatMs * millisecond;
     for (const Session* session : host.hub().sessions()) {
         if (streamOf(*session).shown < since) show(*session);
@@ -443,6 +513,7 @@ void WebEndpoint::Inside::beginStop() {
         if (peer.viewer) watching.push_back(wsi);
     }
     for (lws* wsi : watching) sayGoodbye(wsi);
+    wakeClients(nullptr);  // the hub has said Bye to them
     uv_timer_start(
         timer, [](uv_timer_t* each) { static_cast<Inside*>(each->data)->endStop(); },
         config.limits.farewellMs, 0);

@@ -1,4 +1,5 @@
-/// The web endpoint: a page, and a WebSocket that sends what the page draws.
+/// The web endpoint: a page, a WebSocket that sends what the page draws, and one for pages that
+/// step the world themselves.
 ///
 ///     Result<std::shared_ptr<WebEndpoint>> web = WebEndpoint::open(*host, {"127.0.0.1:0"});
 ///     if (!web) -> print web.error().message, exit 2
@@ -7,7 +8,8 @@
 /// HTTP and WebSockets are libwebsockets', on the host's libuv loop. `/` and the page's files are
 /// answered by server/web_route.h. `/view?session=NAME` is the WebSocket: every binary message is
 /// one frame of the protocol (protocol/frame.h) with a View; the viewer sends nothing, and is let
-/// go if it does. Nobody can play from here.
+/// go if it does. `/peer` is the WebSocket of a page that is a client like those over TCP: see
+/// server/web_peer.h.
 ///
 /// Limits: see `WebLimits`; beyond them a request is answered 429 or 503, a connection closed.
 /// Thread rule: the host's thread.
@@ -26,7 +28,7 @@ namespace huestep::server {
 struct WebLimits {
     std::size_t connections = 256;
     int backlog = 64;               ///< connections that the system holds for us to accept
-    std::size_t viewers = 64;       ///< WebSockets among them, over all sessions
+    std::size_t viewers = 64;       ///< WebSockets among them, of either kind, over all sessions
     double requestsPerSecond = 20;  ///< token bucket an address (IPv6: a /64)
     double requestBurst = 240;
     std::size_t rateBuckets = 256;      ///< that addresses share by their hash
@@ -56,6 +58,7 @@ struct WebCounters {
     std::uint64_t viewsSent = 0;
     std::uint64_t viewsDropped = 0;  ///< a newer one took their place
     std::uint64_t bytesOut = 0;      ///< of views
+    std::uint64_t peersTotal = 0;    ///< pages that step the world themselves
 };
 
 class WebEndpoint : public HostPart {

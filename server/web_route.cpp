@@ -69,7 +69,7 @@ WebReply page(unsigned status, const Words& words, std::span<const WebSession> s
 WebReply assetNamed(std::string_view name) {
     const WebAsset* asset = findWebAsset(name);
     if (!asset) return refusal(404);
-    return {200, asset->type, std::string(asset->body), {}};
+    return {200, asset->type, std::string(asset->body), {}, asset->encoding};
 }
 
 WebReply rootOf(const WebRequest& request, std::span<const WebSession> sessions) {
@@ -95,7 +95,7 @@ WebReply refusal(unsigned status, std::span<const WebSession> sessions) {
 WebReply answer(const WebRequest& request, std::span<const WebSession> sessions) {
     if (request.method != "GET" && request.method != "HEAD") return refusal(405);
     if (request.path == "/") return rootOf(request, sessions);
-    if (request.path == viewPath) return refusal(426, sessions);
+    if (request.path == viewPath || request.path == peerPath) return refusal(426, sessions);
     // Frames of pages are no pages, and index.html needs a session: both go through `/`.
     if (request.path.empty() || request.path.ends_with(".html")) return refusal(404);
     return assetNamed(std::string_view(request.path).substr(1));

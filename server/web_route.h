@@ -28,15 +28,17 @@ struct WebReply {
     unsigned status = 200;
     std::string_view type;
     std::string body;
-    std::string location;  ///< of a redirect
+    std::string location;         ///< of a redirect
+    std::string_view encoding{};  ///< of the body, if it has one
 };
 
-inline constexpr std::string_view viewPath = "/view";  ///< of the WebSocket
+inline constexpr std::string_view viewPath = "/view";  ///< of the WebSocket of who watches
+inline constexpr std::string_view peerPath = "/peer";  ///< of that of who steps the world
 
 ///   /                 the session, if there is one; else the list of sessions
 ///   /?session=NAME    the page; 404 without such a session
 ///   /FILE             a file of the page (server/web_assets.h), by its whole name
-///   /view             426: it is a WebSocket
+///   /view, /peer      426: they are WebSockets
 ///   else              404
 WebReply answer(const WebRequest& request, std::span<const WebSession> sessions);
 

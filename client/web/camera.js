@@ -6,15 +6,29 @@
 
 /** @typedef {{left: number, right: number, bottom: number, top: number}} Box */
 
+/**
+ * @typedef {object} Hand
+ * @property {(x: number, y: number) => boolean} take whether there is something to hold there, m
+ * @property {(x: number, y: number) => void} move
+ * @property {() => void} drop
+ */
+
 const closest = 400;
 const farthest = 0.05;
 const wheelStep = 1.0015;
 
 export class Camera {
-  /** @param {HTMLElement} surface @param {() => void} onMove */
-  constructor(surface, onMove) {
+  /**
+   * @param {HTMLElement} surface
+   * @param {() => void} onMove
+   * @param {Hand | null} hand what one pointer may hold instead of moving the view
+   */
+  constructor(surface, onMove, hand = null) {
     this.surface = surface;
     this.onMove = onMove;
+    this.hand = hand;
+    /** The pointer that holds something. @type {number | null} */
+    this.holding = null;
     this.x = 0;
     this.y = 0;
     this.scale = 20;
@@ -81,14 +95,46 @@ export class Camera {
     surface.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     surface.addEventListener('pointerdown', (event) => {
       surface.setPointerCapture(event.pointerId);
+      if (this.pointers.size === 0 && this.holding === null && this.hand) {
+        const at = this.worldAt(event);
+        if (this.hand.take(at.x, at.y)) {
+          this.holding = event.pointerId;
+          return;
+        }
+      }
       this.pointers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
     });
     surface.addEventListener('pointermove', (event) => this.drag(event));
     for (const end of ['pointerup', 'pointercancel']) {
       surface.addEventListener(end, (event) =>
-        this.pointers.delete(/** @type {PointerEvent} */ (event).pointerId),
+        this.letGo(/** @type {PointerEvent} */ (event).pointerId),
       );
     }
+  }
+
+  /** The world's point under a pointer. @param {PointerEvent} event */
+  worldAt(event) {
+    return {
+      x: this.x + (event.offsetX - this.width / 2) / this.scale,
+      y: this.y - (event.offsetY - this.height / 2) / this.scale,
+    };
+  }
+
+  /** @param {number} x m @param {number} y */
+  pixelOf(x, y) {
+    return {
+      x: this.width / 2 + (x - this.x) * this.scale,
+      y: this.height / 2 - (y - this.y) * this.scale,
+    };
+  }
+
+  /** @param {number} pointer */
+  letGo(pointer) {
+    if (pointer === this.holding) {
+      this.holding = null;
+      this.hand?.drop();
+    }
+    this.pointers.delete(pointer);
   }
 
   /** @param {WheelEvent} event */
@@ -103,6 +149,11 @@ export class Camera {
    * @param {PointerEvent} event
    */
   drag(event) {
+    if (event.pointerId === this.holding) {
+      const at = this.worldAt(event);
+      this.hand?.move(at.x, at.y);
+      return;
+    }
     const before = this.pointers.get(event.pointerId);
     if (!before) return;
     const now = { x: event.offsetX, y: event.offsetY };

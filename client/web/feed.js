@@ -1,5 +1,6 @@
 /**
- * The WebSocket of one session: frames in, and a connection that comes back by itself.
+ * The WebSocket of one session: frames in, or a peer's bytes in and out, and a connection that
+ * comes back by itself.
  *
  * After a loss it waits 0.5 s, then twice as long each time up to 8 s, each wait shortened at
  * random by up to a quarter so that the viewers of a restarted server do not come at one moment.
@@ -27,11 +28,13 @@ export class Feed {
    * @param {string} session
    * @param {(frame: ArrayBuffer) => void} onFrame
    * @param {(state: FeedState, sentence: string) => void} onState the sentence is for people
+   * @param {import('./peer.js').Peer | null} peer takes part instead of watching
    */
-  constructor(session, onFrame, onState) {
+  constructor(session, onFrame, onState, peer = null) {
     this.session = session;
     this.onFrame = onFrame;
     this.onState = onState;
+    this.peer = peer;
     this.waitMs = firstWaitMs;
     /** How often the connection was lost or refused. */
     this.losses = 0;
@@ -51,7 +54,8 @@ export class Feed {
     this.onState('connecting', 'connecting');
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const query = new URLSearchParams({ session: this.session });
-    const socket = new WebSocket(`${scheme}//${location.host}/view?${query}`, 'huestep-view');
+    const door = this.peer ? 'peer' : 'view';
+    const socket = new WebSocket(`${scheme}//${location.host}/${door}?${query}`, `huestep-${door}`);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     this.quietBeats = 0;
@@ -62,11 +66,13 @@ export class Feed {
       this.quietBeats = 0;
       this.waitMs = firstWaitMs;
       this.onState('live', 'live');
+      this.peer?.connected(socket);
     };
     socket.onmessage = (event) => {
       if (this.socket !== socket) return;
       this.quietBeats = 0;
-      this.onFrame(event.data);
+      if (this.peer) this.peer.receive(event.data);
+      else this.onFrame(event.data);
     };
     socket.onclose = (event) => {
       if (this.socket !== socket) return;
@@ -84,13 +90,17 @@ export class Feed {
   }
 
   /** Ends the connection because of what came over it; it is tried again like any other loss. */
-  reject() {
-    this.socket?.close(4000, 'bad frame');
+  reject(reason = '') {
+    if (!this.socket) return;
+    this.socket.close(4000, 'bad frame');
+    // The other side's close tells of it, unless there is more to say.
+    if (reason) this.lost(reason, true);
   }
 
   /** @param {string} reason @param {boolean} opened false: it never came about */
   async lost(reason, opened) {
     this.socket = null;
+    this.peer?.disconnected();
     this.losses += 1;
     const until = performance.now() + this.waitMs * (1 - Math.random() / 4);
     this.waitMs = Math.min(2 * this.waitMs, longestWaitMs);

@@ -1,9 +1,14 @@
-/** The page of one session: frames come in, each is drawn at the screen's next turn. */
+/**
+ * The page of one session: frames come in, each is drawn at the screen's next turn. They are the
+ * server's, or those of a world that the page steps itself.
+ */
 import { Camera } from './camera.js';
+import { Core, CoreError } from './core.js';
 import { lookOf, looks, Painter } from './draw.js';
 import { Feed } from './feed.js';
 import { Legend, refreshMs } from './legend.js';
 import { boundsOf } from './outline.js';
+import { Peer } from './peer.js';
 import { readFrame, ViewError } from './view.js';
 
 /** Ticks whose hash is kept for tests. */
@@ -14,7 +19,11 @@ function byId(id) {
   return /** @type {T} */ (document.getElementById(id));
 }
 
-const session = new URLSearchParams(location.search).get('session') ?? '';
+const query = new URLSearchParams(location.search);
+const session = query.get('session') ?? '';
+const asked = query.get('as');
+/** How this page takes part: by watching, unless its address says otherwise. */
+const role = asked === 'spectator' || asked === 'player' ? asked : null;
 const surface = /** @type {HTMLCanvasElement} */ (byId('canvas'));
 const shown = {
   tick: byId('tick'),
@@ -28,6 +37,8 @@ const shown = {
 
 /** @type {Feed | null} */
 let feed = null;
+/** @type {Peer | null} */
+let peer = null;
 /** @type {import('./view.js').View | null} */
 let newest = null;
 /**
@@ -68,12 +79,39 @@ const huestep = {
   drawMs: [],
   /** @type {{tick: number, root: string}[]} */
   history: [],
+  /** Of a page that steps the world itself; lanes are those of its core, 0 for one that watches. */
+  lanes: 0,
+  player: 0,
+  hashesCompared: 0,
+  mismatches: 0,
+  corrections: 0,
+  snapshots: 0,
+  connections: 0,
+  difference: '',
+  /** What moves in the page's own world, where it lies in the core's memory. */
+  motions: () => peer?.motions(),
+  /** Where the player's own body is, in pixels of the canvas; null if it has none. */
+  ownBody: () => {
+    const at = peer?.ownBody() ?? -1;
+    if (at < 0 || !peer) return null;
+    const [x, y] = peer.motions().slice(8 * at, 8 * at + 2);
+    return camera.pixelOf(x, y);
+  },
   /** @type {Record<string, number>} */
   looks: {},
 };
 Object.assign(window, { huestep });
 
-const camera = new Camera(surface, () => redraw());
+const hand =
+  role === 'player'
+    ? {
+        take: (/** @type {number} */ x, /** @type {number} */ y) =>
+          peer?.grab(x, y) ?? false,
+        move: (/** @type {number} */ x, /** @type {number} */ y) => peer?.moveGrab(x, y),
+        drop: () => peer?.release(),
+      }
+    : null;
+const camera = new Camera(surface, () => redraw(), hand);
 const painter = new Painter(surface, camera);
 const legend = new Legend(byId('body-legend'), byId('moving-legend'), byId('fixed-legend'));
 
@@ -112,8 +150,7 @@ function take(frame) {
   huestep.received += 1;
   huestep.tick = view.tick;
   huestep.root = view.root;
-  huestep.history.push({ tick: view.tick, root: view.root });
-  if (huestep.history.length > remembered) huestep.history.shift();
+  if (!peer) remember(view);
   arrivals.push(performance.now());
   waiting.push(view);
   while (waiting.length > mostWaiting) {
@@ -121,6 +158,42 @@ function take(frame) {
     if (!paused) huestep.overtaken += 1;
   }
   if (!paused) redraw();
+}
+
+/** @param {{tick: number, root: string}} state after a tick */
+function remember({ tick, root }) {
+  huestep.history.push({ tick, root });
+  if (huestep.history.length > remembered) huestep.history.shift();
+}
+
+/** @param {import('./peer.js').PeerNumbers} numbers */
+function stepped(numbers) {
+  remember(numbers);
+  const { player, hashesCompared, mismatches, corrections, snapshots, connections } = numbers;
+  Object.assign(huestep, {
+    player,
+    hashesCompared,
+    mismatches,
+    corrections,
+    snapshots,
+    connections,
+  });
+}
+
+function showAgreement() {
+  const { hashesCompared, mismatches } = huestep;
+  const shownAs = byId('agreement');
+  shownAs.textContent = `${hashesCompared - mismatches} of ${hashesCompared}`;
+  shownAs.dataset.agree = String(mismatches === 0);
+}
+
+/** @param {string} difference */
+function showDifference(difference) {
+  huestep.difference = difference;
+  const line = byId('difference');
+  line.hidden = difference === '';
+  line.textContent =
+    `This page's world differed from the server's, which it has taken over: ${difference}`;
 }
 
 /**
@@ -178,6 +251,7 @@ function showNumbers(view) {
   shown.bodies.textContent = String(view.bodies);
   shown.awake.textContent = String(awake);
   shown.contacts.textContent = String(view.contacts.count);
+  if (peer) showAgreement();
   const now = performance.now();
   if (now - legendAt < refreshMs) return;
   legendAt = now;
@@ -266,5 +340,52 @@ const sizes = new ResizeObserver(resize);
 sizes.observe(surface);
 sizes.observe(byId('foot'));
 painter.resize();
-// Starts by itself, and tells its state before it is here.
-feed = new Feed(session, take, showState);
+
+for (const link of document.querySelectorAll('#modes a')) {
+  const as = /** @type {HTMLElement} */ (link).dataset.as ?? '';
+  const there = new URLSearchParams({ session, ...(as && { as }) });
+  link.setAttribute('href', `/?${there}`);
+  if (as === (role ?? '')) link.setAttribute('aria-current', 'page');
+}
+
+/** @param {'spectator' | 'player'} as @returns {Promise<Peer>} */
+async function makePeer(as) {
+  const core = await Core.load();
+  huestep.lanes = core.lanes;
+  return new Peer(core, session, as, {
+    stepped,
+    view: take,
+    differed: showDifference,
+    failed: (sentence) => feed?.reject(sentence),
+    stopped: (sentence) => {
+      if (feed) feed.peer = null;
+      onlyWatch(sentence);
+      feed?.reject('the core of this page stopped');
+    },
+  });
+}
+
+/** @param {string} sentence why */
+function onlyWatch(sentence) {
+  peer = null;
+  byId('agreement-box').hidden = true;
+  const line = byId('difference');
+  line.hidden = false;
+  line.textContent = `This page only watches: ${sentence}`;
+}
+
+async function start() {
+  if (role) {
+    showState('connecting', 'loading the core');
+    try {
+      peer = await makePeer(role);
+      byId('agreement-box').hidden = false;
+    } catch (problem) {
+      if (!(problem instanceof CoreError)) throw problem;
+      onlyWatch(problem.message);
+    }
+  }
+  // Starts by itself, and tells its state before it is here.
+  feed = new Feed(session, take, showState, peer);
+}
+start();

@@ -1,8 +1,10 @@
 /** What the web endpoint answers to requests that no browser makes, or only a hostile one. */
 import assert from 'node:assert/strict';
 import { randomBytes } from 'node:crypto';
+import { existsSync } from 'node:fs';
 import { request } from 'node:http';
 import { connect } from 'node:net';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { eventually, startServer } from './server.mjs';
 
@@ -116,7 +118,8 @@ test('every reply carries the headers that keep a browser from running anything 
   ]) {
     const { headers } = await get(path);
     assert.match(headers['content-security-policy'], /default-src 'none'; script-src 'self'/, path);
-    assert.doesNotMatch(headers['content-security-policy'], /unsafe|\*/, path);
+    const policy = headers['content-security-policy'].replace("'wasm-unsafe-eval'", '');
+    assert.doesNotMatch(policy, /unsafe|\*/, path);
     assert.equal(headers['x-content-type-options'], 'nosniff', path);
   }
   assert.match((await get('/main.js')).headers['content-type'], /^text\/javascript/);
@@ -160,11 +163,62 @@ test('a viewer that sends anything is let go', async () => {
   }
 });
 
+/** The bytes of messages that a server sends over a WebSocket, until it closes. */
+function heard(socket) {
+  return new Promise((done) => {
+    const parts = [];
+    socket.on('data', (part) => parts.push(part));
+    socket.on('close', () => done(Buffer.concat(parts)));
+  });
+}
+
+test('a page that steps the world itself comes in by a door of its own', async () => {
+  assert.equal((await get('/peer')).status, 426);
+  assert.equal((await watch('/peer', { Origin: 'http://elsewhere.example' })).status, 403);
+  const own = await watch('/peer', { Origin: `http://${host}:${port}` });
+  assert.equal(own.status, 101);
+  const words = heard(own.socket);
+  own.socket.write(masked(2, randomBytes(300)));
+  const said = await words;
+  // A frame of the protocol with a Bye, and then the end.
+  const start = said[1] < 126 ? 2 : 4;
+  assert.equal(said.readUInt16LE(start), 0x4875);
+  assert.equal(said[start + 3], 12, 'a Bye');
+  assert.match(said.toString('latin1'), /no frame starts here/);
+});
+
+test('a page that says nothing is let go, and takes nobody any place', { timeout: 30_000 }, async () => {
+  const silent = [];
+  for (let i = 0; i < 20; ++i) silent.push((await watch('/peer')).socket);
+  const since = Date.now();
+  const last = await Promise.all(silent.map(heard));
+  const seconds = (Date.now() - since) / 1000;
+  assert.ok(seconds > 3 && seconds < 15, `${seconds} s`);
+  for (const said of last) assert.match(said.toString('latin1'), /no Hello in time/);
+});
+
+test('the core for browsers comes packed, in both forms, or not at all', async () => {
+  const sizes = [];
+  for (const name of ['core.wasm', 'core_simd.wasm']) {
+    const { status, headers } = await get(`/${name}`);
+    if (status === 404) continue;
+    assert.equal(headers['content-type'], 'application/wasm');
+    assert.equal(headers['content-encoding'], 'gzip');
+    const module = await (await fetch(`http://${host}:${port}/${name}`)).arrayBuffer();
+    assert.deepEqual(WebAssembly.Module.imports(new WebAssembly.Module(module)), []);
+    assert.ok(Number(headers['content-length']) < module.byteLength / 2);
+    sizes.push(module.byteLength);
+  }
+  const there = existsSync(join(process.env.HUESTEP_WASM ?? 'none', 'huestep.wasm'));
+  assert.equal(sizes.length, there ? 2 : 0);
+});
+
 test('the number of viewers has a cap, and places become free again', async () => {
   const sockets = [];
   let refused = 0;
   for (let i = 0; i < 70; ++i) {
-    const { status, socket } = await watch('/view?session=pile');
+    // Of either kind.
+    const { status, socket } = await watch(i % 2 ? '/view?session=pile' : '/peer');
     if (socket) sockets.push(socket);
     else assert.ok(status === 503, `status ${status}`);
     refused += socket ? 0 : 1;

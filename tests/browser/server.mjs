@@ -79,6 +79,7 @@ export async function startServer(sessions, where = {}) {
     const address = await eventually('the address of the server', line(/^listening on (\S+)$/m));
     return {
       url,
+      address,
       data,
       log: () => program.errors,
       /** Lets bots play in a session. */
