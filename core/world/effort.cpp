@@ -26,6 +26,10 @@ RowStrain larger(const RowStrain& a, const RowStrain& b) {
     return {maxOf(a.contacts, b.contacts), maxOf(a.swept, b.swept), maxOf(a.direct, b.direct)};
 }
 
+RowStrain atMostOne(const RowStrain& strain) {
+    return {minOf(strain.contacts, 1.0f), minOf(strain.swept, 1.0f), minOf(strain.direct, 1.0f)};
+}
+
 /// By what helps: substeps, or trees.
 IslandStrain byCure(const RowStrain& strain, bool trees, bool mayHaveTrees) {
     if (!trees && mayHaveTrees) return {strain.contacts, strain.swept};
@@ -303,7 +307,7 @@ bool BatchEffort::decide() {
             const bool trees = now.trees && m_plan.jointsOf[body] > 0;
             RowStrain load = island.strain;
             // What a blow asks for is over before it could be given.
-            if (island.hit) load.contacts = minOf(load.contacts, 1.0f);
+            if (island.hit) load = atMostOne(load);
             const IslandStrain strain = byCure(load, trees, range.mayHaveTrees);
             island.next = planEffort({now.level, island.calm, now.gentle, trees}, strain, range);
             island.next.recovers = now.recovers && island.overlaps;
