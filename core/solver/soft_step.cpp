@@ -14,10 +14,10 @@ namespace {
 constexpr float jointDamping = 1.0f;
 constexpr float pushSpeed = 3.0f;  // m/s
 
-// Substeps shorter than this, s, sweep twice where something may hit something. Their rows are stiffer, and in one sweep a blow runs
-// along some of them only: of ten rows of boxes that are hit by one of 100 times their mass at
-// 8 substeps, the farthest goes 0.59 m aside with one sweep and 0.08 m with two. At 16 and one it
-// is 0.57 m: it is no matter of more substeps.
+// Substeps shorter than this, s, sweep twice where something may hit something. Their rows are
+// stiffer, and in one sweep a blow runs along some of them only: of ten rows of boxes that are hit
+// by one of 100 times their mass at 8 substeps, the farthest goes 0.59 m aside with one sweep and
+// 0.08 m with two. At 16 and one it is 0.57 m: it is no matter of more substeps.
 constexpr float shortSubstep = 1.0f / 300.0f;
 
 // Of contacts that begin, in their first substep: a box on a slope of 20° starts with half a
