@@ -1,12 +1,10 @@
 #include "protocol/flat/flat_codec.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
+#include "protocol/by_type.h"
 #include "protocol/flat/fields.h"
 #include "protocol/flat/flat_writer.h"
-#include "protocol/frame.h"
 
 namespace huestep::protocol::flat {
 
@@ -63,59 +61,41 @@ void viewFields(FlatWriter& io, const View& m) {
     io.numbers("joints", 6, numbersOf(m.joints), 4 * maxViewJoints);
 }
 
-template <class M>
-std::vector<std::byte> encodeAs(const M& message) {
-    FlatWriter writer(headerBytes);
-    writer.root(layoutOf<M>, [&] {
-        if constexpr (std::is_same_v<M, View>) {
-            viewFields(writer, message);
-        } else {
-            fields(writer, message);
-        }
-    });
-    return writer.take();
-}
-
-template <class M>
-Result<Message> decodeAs(MessageType type, std::span<const std::byte> payload) {
-    if constexpr (std::is_same_v<M, View>) {
-        return Error{"View: is for pages to read"};
-    } else {
-        FlatReader reader(nameOf(type), payload);
-        M message{};
-        if (!reader.error()) reader.root(layoutOf<M>, [&] { fields(reader, message); });
-        if (reader.error()) return *reader.error();
-        return Message(std::move(message));
+struct Flat {
+    template <class M>
+    static std::vector<std::byte> encode(const M& message) {
+        FlatWriter writer(headerBytes);
+        writer.root(layoutOf<M>, [&] {
+            if constexpr (std::is_same_v<M, View>) {
+                viewFields(writer, message);
+            } else {
+                fields(writer, message);
+            }
+        });
+        return writer.take();
     }
-}
-
-using Decoder = Result<Message> (*)(MessageType, std::span<const std::byte>);
-
-template <std::size_t... I>
-constexpr std::array<Decoder, sizeof...(I)> makeDecoders(std::index_sequence<I...>) {
-    return {&decodeAs<std::variant_alternative_t<I, Message>>...};
-}
-constexpr auto decoders = makeDecoders(std::make_index_sequence<std::variant_size_v<Message>>{});
+    template <class M>
+    static Result<Message> decode(MessageType type, std::span<const std::byte> payload) {
+        if constexpr (std::is_same_v<M, View>) {
+            return Error{"View: is for pages to read"};
+        } else {
+            FlatReader reader(nameOf(type), payload);
+            M message{};
+            if (!reader.error()) reader.root(layoutOf<M>, [&] { fields(reader, message); });
+            if (reader.error()) return *reader.error();
+            return Message(std::move(message));
+        }
+    }
+};
 
 }  // namespace
 
 std::vector<std::byte> encode(const Message& message) {
-    std::vector<std::byte> bytes =
-        std::visit([](const auto& content) { return encodeAs(content); }, message);
-    writeHeader(typeOf(message), bytes);
-    return bytes;
+    return encodeBy<Flat>(message);
 }
 
 Result<Message> decode(MessageType type, std::span<const std::byte> payload) {
-    const auto place = static_cast<std::size_t>(type);
-    if (place >= decoders.size()) {
-        return Error{"message type " + std::to_string(place) + " is unknown"};
-    }
-    if (payload.size() > maxPayload(type)) {
-        return Error{std::string(nameOf(type)) + ": " + std::to_string(payload.size()) +
-                     " bytes, at most " + std::to_string(maxPayload(type))};
-    }
-    return decoders[place](type, payload);
+    return decodeBy<Flat>(type, payload);
 }
 
 std::size_t commandBytes(const Command& command) {

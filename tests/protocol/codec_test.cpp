@@ -15,12 +15,9 @@ namespace huestep::protocol {
 namespace {
 
 using samples::Draw;
+using samples::reasonOf;
 
 constexpr std::uint64_t seed = 20'240'611;
-
-std::string reasonOf(const Result<Message>& result) {
-    return result.ok() ? "accepted" : result.error().message;
-}
 
 /// What a peer says to the message.
 std::string answerTo(const Message& message) {

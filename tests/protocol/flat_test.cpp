@@ -9,12 +9,9 @@ namespace huestep::protocol {
 namespace {
 
 using samples::Draw;
+using samples::reasonOf;
 
 constexpr std::uint64_t seed = 20'261'122;
-
-std::string reasonOf(const Result<Message>& result) {
-    return result.ok() ? "accepted" : result.error().message;
-}
 
 std::span<const std::byte> payloadOf(const std::vector<std::byte>& frame) {
     return std::span(frame).subspan(headerBytes);

@@ -12,6 +12,11 @@
 
 namespace huestep::protocol::samples {
 
+/// What a decoder says of bytes.
+inline std::string reasonOf(const Result<Message>& result) {
+    return result.ok() ? "accepted" : result.error().message;
+}
+
 /// Draws values from a seed. `std::uniform_*` differ between libraries, so ranges are our own.
 class Draw {
  public:
