@@ -4,7 +4,7 @@ import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { launch, openPage, phone, state, until } from './browser.mjs';
-import { ask, eventually, startServer } from './server.mjs';
+import { ask, eventually, startServer, withServer } from './server.mjs';
 
 const pictures = process.env.HUESTEP_PICTURES ?? 'browser-pictures';
 let browser;
@@ -13,17 +13,6 @@ before(async () => {
   browser = await launch();
 });
 after(() => browser?.close());
-
-async function withServer(sessions, body) {
-  const server = await startServer(sessions);
-  try {
-    await body(server);
-    assert.equal(await server.stop(), 0, server.log());
-  } finally {
-    await server.stop();
-    server.forget();
-  }
-}
 
 const as = (server, session, role) => `${server.url}?session=${session}&as=${role}`;
 

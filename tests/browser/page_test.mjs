@@ -4,7 +4,7 @@ import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { desktop, launch, openPage, phone, pixels, state, until } from './browser.mjs';
-import { ask, eventually, startServer } from './server.mjs';
+import { ask, eventually, startServer, withServer } from './server.mjs';
 
 const pictures = process.env.HUESTEP_PICTURES ?? 'browser-pictures';
 let browser;
@@ -13,18 +13,6 @@ before(async () => {
   browser = await launch();
 });
 after(() => browser?.close());
-
-/** A server and what is done with it; the server ends whatever happens, and must end well. */
-async function withServer(sessions, body) {
-  const server = await startServer(sessions);
-  try {
-    await body(server);
-    assert.equal(await server.stop(), 0, server.log());
-  } finally {
-    await server.stop();
-    server.forget();
-  }
-}
 
 test('the page shows a session that is played, tick by tick, with the hashes of its journal', () =>
   withServer({ sandbox: 'sandbox' }, async (server) => {

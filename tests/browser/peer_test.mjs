@@ -9,7 +9,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { ask, eventually, startServer } from './server.mjs';
+import { ask, eventually, withServer } from './server.mjs';
 
 const root = process.env.HUESTEP_SOURCE ?? fileURLToPath(new URL('../..', import.meta.url));
 const modules = process.env.HUESTEP_WASM ?? 'build/release/wasm';
@@ -75,25 +75,23 @@ function enterSession(server, module, session, role = 'spectator') {
   return { peer, told, line };
 }
 
-async function withServer(sessions, body) {
-  const server = await startServer(sessions);
-  const lines = [];
-  try {
-    await body(server, (...how) => {
-      const joined = enterSession(server, ...how);
-      lines.push(joined.line);
-      return joined;
-    });
-  } finally {
-    for (const line of lines) if (line.socket) line.close();
-    await server.stop();
-    server.forget();
-  }
-}
+const withPeers = (sessions, body) =>
+  withServer(sessions, async (server) => {
+    const lines = [];
+    try {
+      await body(server, (...how) => {
+        const joined = enterSession(server, ...how);
+        lines.push(joined.line);
+        return joined;
+      });
+    } finally {
+      for (const line of lines) if (line.socket) line.close();
+    }
+  });
 
 for (const [form, module] of Object.entries(forms)) {
   test(`${form}: a spectator that comes late steps what bots play, every hash the server's`, () =>
-    withServer({ play: 'sandbox' }, async (server, enter) => {
+    withPeers({ play: 'sandbox' }, async (server, enter) => {
       server.play('play', 3);
       await new Promise((done) => setTimeout(done, 1500));
       const { told } = enter(module, 'play');
@@ -122,7 +120,7 @@ for (const [form, module] of Object.entries(forms)) {
 const module = forms['with SIMD'];
 
 test('a flipped bit is found in the next tick, named, and mended', () =>
-  withServer({ pile: 'pyramid:base=12' }, async (server, enter) => {
+  withPeers({ pile: 'pyramid:base=12' }, async (server, enter) => {
     const { peer, told } = enter(module, 'pile');
     await eventually('30 ticks', () => told.history.length > 30);
     const motions = peer.motions();
@@ -151,7 +149,7 @@ test('a flipped bit is found in the next tick, named, and mended', () =>
   }));
 
 test('a player of the page drags a body, and keeps its seat over a lost connection', () =>
-  withServer({ play: 'sandbox' }, async (server, enter) => {
+  withPeers({ play: 'sandbox' }, async (server, enter) => {
     const { peer, told, line } = enter(module, 'play', 'player');
     await eventually('60 ticks', () => told.history.length > 60);
     const { player } = told.numbers;
@@ -178,7 +176,7 @@ test('a player of the page drags a body, and keeps its seat over a lost connecti
   }));
 
 test('bytes that are no messages end the connection with a sentence', () =>
-  withServer({ pile: 'pyramid:base=3' }, async (server, enter) => {
+  withPeers({ pile: 'pyramid:base=3' }, async (server, enter) => {
     const { peer, told, line } = enter(module, 'pile');
     await eventually('10 ticks', () => told.history.length > 10);
     peer.receive(new Uint8Array(64).fill(7).buffer);

@@ -1,4 +1,5 @@
 /** Starts and stops the program under test; every process started here ends here. */
+import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -101,6 +102,18 @@ export async function startServer(sessions, where = {}) {
   } catch (problem) {
     await program.stop();
     throw problem;
+  }
+}
+
+/** A server and what is done with it; the server ends whatever happens, and must end well. */
+export async function withServer(sessions, body) {
+  const server = await startServer(sessions);
+  try {
+    await body(server);
+    assert.equal(await server.stop(), 0, server.log());
+  } finally {
+    await server.stop();
+    server.forget();
   }
 }
 
