@@ -93,6 +93,7 @@ class BatchEffort {
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
     [[nodiscard]] float speedOf(std::uint32_t body) const;
     [[nodiscard]] bool wantsTree(std::uint32_t body) const;
+    [[nodiscard]] bool mayStiffen(const IslandEffort& now, std::uint8_t most) const;
     [[nodiscard]] EffortRange rangeOf(std::uint32_t island, const IslandEffort& now) const;
     [[nodiscard]] bool hitsAnything() const;
     void gatherSweeps();
@@ -251,12 +252,21 @@ EffortRange BatchEffort::rangeOf(std::uint32_t island, const IslandEffort& now) 
     const bool hangs = jointed && m_batch.trees && !now.sweeps &&
                        m_plan.jointsOf[island] == m_plan.constraintsOf[island];
     if (now.fastest < still && hangs) least = hangingEffort;
+    const std::uint8_t most = affordableEffort(m_plan.constraintsOf[island]);
     return {.least = least,
-            .most = affordableEffort(m_plan.constraintsOf[island]),
-            .gentle = !now.hit && (m_batch.gentle || now.fastest < gentleSpeed),
+            .most = most,
+            .gentle = !now.hit && (m_batch.gentle || mayStiffen(now, most)),
             .jointed = jointed,
             .mayHaveTrees = mayHaveTrees(m_plan, island),
             .keepsTrees = now.keepsTrees};
+}
+
+/// Whether contacts that were soft may be stiffer from now on. In an island too large for more
+/// substeps that also takes that they are not pressed together by more than they may: a pile that
+/// has settled softly would heave, fall back, be hit and soft again, and so on for good.
+bool BatchEffort::mayStiffen(const IslandEffort& now, std::uint8_t most) const {
+    if (!(now.fastest < gentleSpeed)) return false;
+    return most > standardEffort || !(now.strain.contacts > 1.0f);
 }
 
 /// Whether a giant that is strained so stays as it is, so that nothing is to be written.
@@ -276,6 +286,7 @@ bool BatchEffort::stays(const RowStrain& strain) {
     IslandEffort seen;
     seen.fastest = fastest;
     seen.hit = m_hits;
+    seen.strain = strain;
     const EffortRange range = rangeOf(island, seen);
     const EffortPlan next = planEffort(now, byCure(strain, now.trees, range.mayHaveTrees), range);
     m_world.islandEfforts[island].strain = strain;
