@@ -48,14 +48,18 @@ std::string effortOf(const IslandView& island) {
            number(static_cast<double>(island.strain)) + " of the need";
 }
 
+std::string nameOfBody(BodyId body) {
+    return body == 0 ? "the world" : "body " + std::to_string(body);
+}
+
 /// What a budget did not reach; empty: nothing.
 std::string sentenceOf(const TooStiff& stiff) {
     if (stiff.islands == 0) return {};
     return std::to_string(stiff.islands) + " island" + (stiff.islands == 1 ? "" : "s") +
            " too stiff for the budget: that of body " + std::to_string(stiff.body) +
            " has n = " + std::to_string(stiff.substeps) + ", a " +
-           (stiff.joint ? "joint" : "contact") + " of it needs " +
-           std::to_string(stiff.neededSubsteps);
+           (stiff.joint ? "joint" : "contact") + " of it, of " + nameOfBody(stiff.bodyA) + " and " +
+           nameOfBody(stiff.bodyB) + ", needs " + std::to_string(stiff.neededSubsteps);
 }
 
 Json explanation(const StepLayout& layout) {
@@ -183,7 +187,8 @@ Json RunReport::asJson() const {
                          {"lowest_body", stiff.body},
                          {"substeps", stiff.substeps},
                          {"needed_substeps", stiff.neededSubsteps},
-                         {"row", stiff.joint ? "joint" : "contact"}};
+                         {"row", stiff.joint ? "joint" : "contact"},
+                         {"row_bodies", {stiff.bodyA, stiff.bodyB}}};
     json["waited_ms"] = milliseconds(inside->waited);
     if (inside->layout) json["explain"] = explanation(*inside->layout);
     json["state"] = {{"bytes_a_body", sizeof(BodyMotion)},

@@ -2,12 +2,12 @@
 // (core/solver/effort.h).
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "core/parallel/over_range.h"
 #include "core/solver/effort.h"
 #include "core/solver/method.h"
+#include "core/world/row_strains.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
@@ -22,10 +22,6 @@ constexpr float unrestSpeed = 0.5f;
 // does, however fast all move together.
 constexpr float gentleSpeed = 1.0f;
 
-RowStrain larger(const RowStrain& a, const RowStrain& b) {
-    return {maxOf(a.contacts, b.contacts), maxOf(a.swept, b.swept), maxOf(a.direct, b.direct)};
-}
-
 RowStrain atMostOne(const RowStrain& strain) {
     return {minOf(strain.contacts, 1.0f), minOf(strain.swept, 1.0f), minOf(strain.direct, 1.0f)};
 }
@@ -34,11 +30,6 @@ RowStrain atMostOne(const RowStrain& strain) {
 IslandStrain byCure(const RowStrain& strain, bool trees, bool mayHaveTrees) {
     if (!trees && mayHaveTrees) return {strain.contacts, strain.swept};
     return {maxOf(strain.contacts, strain.swept), strain.direct};
-}
-
-float mostOf(const float (&lanes)[blockLanes], float most) {
-    for (const float lane : lanes) most = maxOf(most, lane);
-    return most;
 }
 
 /// How far the shapes of two bodies may overlap where a scene leaves it at *visual*, m.
@@ -70,12 +61,8 @@ class BatchEffort {
         : m_world(world),
           m_plan(world.accelerators.plan),
           m_rows(world.accelerators.rows),
-          m_batch(batch) {
-        const float h = world.state.info().stepSeconds / static_cast<float>(batch.substeps);
-        const RowFrequency frequency = rowFrequency(batch.substeps, batch.gentle, batch.large);
-        m_contactFloor = softFloor(frequency.contact * rampShare(batch.ramp), h);
-        m_jointFloor = softFloor(frequency.joint * rampShare(batch.ramp), h);
-    }
+          m_batch(batch),
+          m_strains(world, batch) {}
 
     /// Writes the levels of the batch's bodies, and makes impulses fit them. Returns whether any
     /// island changes its level.
@@ -86,10 +73,6 @@ class BatchEffort {
  private:
     template <class F>
     void overBodies(F&& f) const;
-    template <class F>
-    void overRows(F&& f) const;
-    [[nodiscard]] RowStrain mostStrain() const;
-    [[nodiscard]] RowStrain strainOfJoint(const JointRow& row) const;
     [[nodiscard]] IslandEffort& islandOf(BodyPlace a, BodyPlace b) const;
     [[nodiscard]] float speedOf(std::uint32_t body) const;
     [[nodiscard]] bool wantsTree(std::uint32_t body) const;
@@ -107,8 +90,7 @@ class BatchEffort {
     const Plan& m_plan;
     Rows& m_rows;
     Batch& m_batch;
-    float m_contactFloor;  // m, of 1 m/s a substep
-    float m_jointFloor;
+    RowStrains m_strains;
     bool m_hits = false;  ///< whether any contact met hard
 };
 
@@ -120,54 +102,8 @@ void BatchEffort::overBodies(F&& f) const {
     }
 }
 
-/// `f(a, b, strain)` for every row that is strained at all.
-template <class F>
-void BatchEffort::overRows(F&& f) const {
-    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
-        const ContactBlock& rows = m_rows.blocks[block];
-        for (std::size_t i = 0; i < blockLanes; ++i) {
-            if (rows.strain[i] == 0.0f) continue;
-            f(rows.bodyA[i], rows.bodyB[i], RowStrain{.contacts = m_contactFloor * rows.strain[i]});
-        }
-    }
-    for (std::uint32_t at = m_batch.firstRevoluteBlock; at < m_batch.endRevoluteBlock; ++at) {
-        const RevoluteBlock& rows = m_rows.revolutes[at];
-        for (std::size_t i = 0; i < blockLanes; ++i) {
-            if (rows.strain[i] == 0.0f) continue;
-            f(rows.bodyA[i], rows.bodyB[i],
-              RowStrain{.swept = m_jointFloor * std::sqrt(rows.strain[i])});
-        }
-    }
-    for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
-        const JointRow& row = m_rows.joints[i];
-        f(row.bodyA, row.bodyB, strainOfJoint(row));
-    }
-}
-
-RowStrain BatchEffort::strainOfJoint(const JointRow& row) const {
-    const float strain = m_jointFloor * row.strain;
-    return row.direct ? RowStrain{.direct = strain} : RowStrain{.swept = strain};
-}
-
-RowStrain BatchEffort::mostStrain() const {
-    RowStrain most;
-    float contacts = 0.0f, revolutes = 0.0f;
-    for (std::uint32_t block = m_batch.firstBlock; block < m_batch.endBlock; ++block) {
-        contacts = mostOf(m_rows.blocks[block].strain, contacts);
-    }
-    for (std::uint32_t at = m_batch.firstRevoluteBlock; at < m_batch.endRevoluteBlock; ++at) {
-        revolutes = mostOf(m_rows.revolutes[at].strain, revolutes);
-    }
-    for (std::uint32_t i = m_batch.firstJoint; i < m_batch.endJoint; ++i) {
-        most = larger(most, strainOfJoint(m_rows.joints[i]));
-    }
-    return larger(most, {.contacts = m_contactFloor * contacts,
-                         .swept = m_jointFloor * std::sqrt(revolutes)});
-}
-
 IslandEffort& BatchEffort::islandOf(BodyPlace a, BodyPlace b) const {
-    const auto place = static_cast<std::size_t>(b >= 0 ? b : readPlace(a));
-    return m_world.islandEfforts[m_plan.islandOf[m_plan.bodyOfPlace[place]]];
+    return m_world.islandEfforts[m_strains.islandOf(a, b)];
 }
 
 /// Impulses of this step's substeps become those of the next one's.
@@ -223,7 +159,7 @@ void BatchEffort::gather(const std::optional<RowStrain>& strain) {
     });
     gatherSweeps();
     if (strain) return;
-    overRows([&](BodyPlace a, BodyPlace b, const RowStrain& ofRow) {
+    m_strains.over([&](BodyPlace a, BodyPlace b, const RowStrain& ofRow) {
         IslandEffort& island = islandOf(a, b);
         island.strain = larger(island.strain, ofRow);
     });
@@ -294,7 +230,7 @@ bool BatchEffort::stays(const RowStrain& strain) {
 }
 
 bool BatchEffort::decide() {
-    const RowStrain most = mostStrain();
+    const RowStrain most = m_strains.most();
     m_hits = hitsAnything();
     if (stays(most)) return false;
     // Where every island is as calm as the one that is strained most, none needs a closer look.
@@ -411,25 +347,6 @@ void World::Data::planEfforts(Executor* executor) {
     for (const std::uint32_t body : plan.freeBodies) {
         state.motions[body].effort = standardEffort;
         state.motions[body].calm = 0;
-    }
-}
-
-/// Islands whose budget does not reach what they need, for people.
-void World::Data::reportTooStiff() {
-    const Plan& plan = accelerators.plan;
-    for (const std::uint32_t body : plan.awake) {
-        if (plan.islandOf[body] != body || plan.constraintsOf[body] == 0) continue;
-        const RowStrain& strain = islandEfforts[body].strain;
-        const float most = maxOf(strain.contacts, strain.swept);
-        const std::uint8_t level = levelOf(state.motions[body].effort);
-        if (!(most > 1.0f) || level < affordableEffort(plan.constraintsOf[body])) continue;
-        ++report.tooStiff.islands;
-        const std::uint32_t needed = substepsOf(neededEffort(level, most));
-        if (needed <= report.tooStiff.neededSubsteps) continue;
-        report.tooStiff.body = state.bodies[body].id;
-        report.tooStiff.substeps = substepsOf(level);
-        report.tooStiff.neededSubsteps = needed;
-        report.tooStiff.joint = strain.swept > strain.contacts;
     }
 }
 

@@ -60,6 +60,7 @@ struct TooStiff {
     std::uint32_t substeps = 0;
     std::uint32_t neededSubsteps = 0;  ///< at which its worst row would be within the need
     bool joint = false;                ///< whether that row is a joint's, not a contact's
+    BodyId bodyA = 0, bodyB = 0;       ///< that it holds; 0: the world
 };
 
 /// What the last step did: for people and charts, never state.

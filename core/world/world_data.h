@@ -227,7 +227,8 @@ struct World::Data : Carried {
     /// From the rows of this step, the levels of the next one.
     void planEfforts(Executor* executor);
     [[nodiscard]] bool recovers() const;
-    void reportTooStiff();
+    void reportTooStiff();  // too_stiff.cpp
+    void nameWorstRow(std::uint32_t island);
     /// By body, those of this step: what the state says, and more where contacts begin.
     [[nodiscard]] std::vector<std::uint8_t> effortsNow() const;
 
