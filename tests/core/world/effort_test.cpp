@@ -141,8 +141,7 @@ TEST(WorldEffort, SaysWhichIslandIsTooStiffForItsBudget) {
     for (const ContactView& contact : world.contactViews()) {
         if (contact.separation[0] < deepest.separation[0]) deepest = contact;
     }
-    EXPECT_EQ(std::minmax(stiff.bodyA, stiff.bodyB),
-              std::minmax(deepest.shapeA, deepest.shapeB));
+    EXPECT_EQ(std::minmax(stiff.bodyA, stiff.bodyB), std::minmax(deepest.shapeA, deepest.shapeB));
 }
 
 TEST(WorldEffort, APileTooLargeForMoreSubstepsComesToRestWithoutHeaving) {
