@@ -47,7 +47,9 @@ class Life {
  public:
     Life(PlayerConfig config, protocol::Address address)
         : m_config(std::move(config)),
-          m_executor(m_config.threads > 1 ? std::make_unique<Executor>(m_config.threads) : nullptr),
+          m_executor(m_config.threads > 1
+                         ? std::make_unique<Executor>(m_config.threads, 0, nullptr, uv_hrtime)
+                         : nullptr),
           m_replica(ReplicaConfig{m_config.session,
                                   m_config.role,
                                   m_config.fingerprint,

@@ -52,7 +52,9 @@ struct Host::Inside {
     explicit Inside(HostConfig given)
         : config(std::move(given)),
           writer([this] { uv_async_send(&news); }),
-          executor(config.threads > 1 ? std::make_unique<Executor>(config.threads) : nullptr),
+          executor(config.threads > 1
+                       ? std::make_unique<Executor>(config.threads, 0, nullptr, uv_hrtime)
+                       : nullptr),
           hub({config.limits, config.fingerprint, config.log, {executor.get()}}, writer),
           sockets(loop, hub) {}
     ~Inside();

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/solver/effort.h"
 #include "core/solver/method.h"
 #include "tools/command.h"
 #include "tools/engines.h"
@@ -19,8 +20,8 @@ namespace {
 struct Options {
     std::vector<std::string> cases;  // none: all
     std::string engine = "huestep";
-    std::string method = "soft-step";
-    std::string substeps = "auto";
+    std::string method;    // empty: soft-step
+    std::string substeps;  // empty: auto
     bool list = false;
     bool json = false;
 };
@@ -51,39 +52,56 @@ Result<std::vector<std::uint32_t>> parseSubsteps(const std::string& text) {
             return Error{"--substeps: '" + piece +
                          "' is neither auto nor a whole number from 1 to 64"};
         all.push_back(static_cast<std::uint32_t>(n));
+        if (std::count(all.begin(), all.end(), all.back()) > 1)
+            return Error{"--substeps: " + piece + " is given twice"};
     }
     return all;
+}
+
+/// What a method does that is not told how much: the product plans it, all others take the
+/// standard.
+std::string headOfAuto(Method method) {
+    if (method == Method::SoftStep) return "planned";
+    return "as it comes (" + std::to_string(huestep::substepsOf(standardEffort)) + ")";
 }
 
 Result<std::vector<Column>> columnsOf(const Options& o) {
     if (const Status known = checkEngine(o.engine, benchEngineNames()); !known)
         return known.error();
+    const Status own = checkOwnWay(o.engine, !o.method.empty(), !o.substeps.empty());
+    if (!own) return own.error();
     const auto make = [engine = o.engine](const Scene& scene) { return makeEngine(engine, scene); };
     if (o.engine != "huestep") return std::vector<Column>{{o.engine, {make, std::nullopt, 0}}};
-    const Result<Method> method = parseMethod(o.method);
+    const Result<Method> method = parseMethod(o.method.empty() ? "soft-step" : o.method);
     if (!method) return method.error();
-    const Result<std::vector<std::uint32_t>> substeps = parseSubsteps(o.substeps);
+    const Result<std::vector<std::uint32_t>> substeps =
+        parseSubsteps(o.substeps.empty() ? "auto" : o.substeps);
     if (!substeps) return substeps.error();
     std::vector<Column> columns;
     for (const std::uint32_t n : *substeps)
-        columns.push_back({n == 0 ? "planned" : "n = " + std::to_string(n), {make, *method, n}});
+        columns.push_back(
+            {n == 0 ? headOfAuto(*method) : "n = " + std::to_string(n), {make, *method, n}});
     return columns;
 }
 
 /// Those named, by case or by metric; all if none is.
 Result<std::vector<const MetricCase*>> chosenCases(const std::vector<std::string>& names) {
     std::vector<const MetricCase*> chosen;
+    const auto isCalled = [](const MetricCase& metric, const std::string& name) {
+        return lowerCase(name) == lowerCase(metric.name) ||
+               lowerCase(name) == lowerCase(metric.metric);
+    };
     for (const MetricCase& metric : metricCases())
-        if (names.empty() || std::find(names.begin(), names.end(), metric.name) != names.end() ||
-            std::find(names.begin(), names.end(), metric.metric) != names.end())
+        if (names.empty() || std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+                return isCalled(metric, name);
+            }))
             chosen.push_back(&metric);
     for (const std::string& name : names) {
-        const bool known = std::any_of(chosen.begin(), chosen.end(), [&](const MetricCase* c) {
-            return c->name == name || c->metric == name;
-        });
+        const bool known = std::any_of(chosen.begin(), chosen.end(),
+                                       [&](const MetricCase* c) { return isCalled(*c, name); });
         if (!known)
             return Error{"there is no case '" + name +
-                         "'; --list shows them, and A1 to A20 take all of a metric"};
+                         "'; --list shows them, and A1 to A20 or R take all of a metric"};
     }
     return chosen;
 }
@@ -92,8 +110,8 @@ Answer showList(const std::vector<const MetricCase*>& cases, bool json) {
     Table table({"metric", "case", "class", "unit", "against", "what"});
     Json list = Json::array();
     for (const MetricCase* c : cases) {
-        table.add({std::string(c->metric), c->name, std::string(nameOf(c->kind)),
-                   std::string(c->unit), std::string(c->reference), c->what});
+        table.add({std::string(c->metric), c->name, std::string(nameOf(c->kind)), unitText(c->unit),
+                   std::string(c->reference), c->what});
         list.push_back({{"metric", c->metric},
                         {"case", c->name},
                         {"class", nameOf(c->kind)},
@@ -148,11 +166,18 @@ void printTable(const std::vector<Column>& columns, const std::vector<Row>& rows
     for (const Row& row : rows) {
         std::vector<std::string> cells{std::string(row.metric->metric), row.metric->name};
         for (const std::optional<double>& error : row.errors) cells.push_back(cell(error));
-        cells.insert(cells.end(),
-                     {std::string(row.metric->unit), std::string(row.metric->reference)});
+        cells.insert(cells.end(), {unitText(row.metric->unit), std::string(row.metric->reference)});
         table.add(cells);
     }
     table.print();
+    // Orders say nothing of a single effort, and nothing of any that cannot be doubled.
+    const auto isOrder = [](const Row& row) { return row.metric->unit == "order"; };
+    const auto silent = [&](const Row& row) {
+        return isOrder(row) && std::none_of(row.errors.begin(), row.errors.end(),
+                                            [](const auto& error) { return error.has_value(); });
+    };
+    if (std::any_of(rows.begin(), rows.end(), silent))
+        std::printf("orders need --substeps, as in 1,2,4, of 32 at most\n");
 }
 
 Answer accuracy(const Options& o) {

@@ -5,6 +5,7 @@
 /// because measuring between ticks would empty the caches that the ticks are timed with.
 #include "tools/bench.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <set>
@@ -40,8 +41,11 @@ struct Options {
 
 Result<std::vector<std::string>> parseEngines(const std::string& text) {
     std::vector<std::string> names = splitAtCommas(text);
-    for (const std::string& name : names)
+    for (const std::string& name : names) {
         if (const Status known = checkBenchEngine(name); !known) return known.error();
+        if (std::count(names.begin(), names.end(), name) > 1)
+            return Error{"--engine: " + name + " is given twice"};
+    }
     return names;
 }
 
@@ -136,6 +140,8 @@ Answer bench(const Options& options) {
     if (!engines) return engines.error();
     std::vector<NamedScene> scenes;
     for (const std::string& name : options.scenes) {
+        if (std::count(options.scenes.begin(), options.scenes.end(), name) > 1)
+            return Error{name + " is given twice"};
         Result<NamedScene> scene = loadScene(name);
         if (!scene) return scene.error();
         scenes.push_back(std::move(scene).value());
@@ -193,23 +199,28 @@ void addBench(Menu& menu) {
                 "- where bodies came or went.");
     CLI::Option* scenes =
         sub->add_option("SCENE", o->scenes, "Scenes (default: the benchmark scenes)");
-    sub->add_option("--threads", o->threads, "Thread counts (default: 1,2)");
+    CLI::Option* threads = sub->add_option("--threads", o->threads, "Thread counts (default: 1,2)");
     std::string names;
     for (const std::string& name : benchEngineNames()) names += (names.empty() ? "" : ", ") + name;
-    sub->add_option("--engine", o->engines,
-                    "Of " + names + ", huestep:METHOD (default: huestep,box2d)");
-    sub->add_option("--ticks", o->ticks, "Steps to take (default: each scene's own)")
-        ->transform(wholeNumber(1, 1'000'000));
-    sub->add_option("--repeat", o->repeats, "Timed runs of each row (default: 6)")
-        ->transform(wholeNumber(1, 1000));
+    CLI::Option* engines = sub->add_option(
+        "--engine", o->engines, "Of " + names + ", huestep:METHOD (default: huestep,box2d)");
+    CLI::Option* ticks =
+        sub->add_option("--ticks", o->ticks, "Steps to take (default: each scene's own)")
+            ->transform(wholeNumber(1, 1'000'000));
+    CLI::Option* repeats =
+        sub->add_option("--repeat", o->repeats, "Timed runs of each row (default: 6)")
+            ->transform(wholeNumber(1, 1000));
     CLI::Option* csv = sub->add_option("--csv", o->csv, "Also write the rows to this file");
     CLI::Option* rollback =
         sub->add_flag("--rollback", o->rollback,
                       "Instead: what checkpoints, going back 8 ticks, snapshots and hashes cost");
     CLI::Option* scale = sub->add_flag(
         "--scale", o->scale, "Instead: time and memory a body of worlds of 100 to 100,000");
-    for (CLI::Option* other : {rollback, scale}) other->excludes(scenes)->excludes(csv);
-    rollback->excludes(scale);
+    // What would do nothing is refused.
+    for (CLI::Option* other : {rollback, scale})
+        for (CLI::Option* moot : {scenes, csv, engines, ticks}) other->excludes(moot);
+    rollback->excludes(threads)->excludes(scale);
+    scale->excludes(repeats);
     sub->add_flag("--quick", o->quick, "With --scale: up to 1,000 bodies alone")->needs(scale);
     sub->add_flag("--json", o->json, "Print one JSON document");
 }

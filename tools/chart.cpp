@@ -2,7 +2,9 @@
 /// pictures and tables.
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "tools/chart/csv.h"
 #include "tools/chart/document.h"
@@ -33,11 +35,21 @@ struct Options {
     }
 };
 
-/// Says what is done, how far the whole is, and how long this took.
-void say(const char* part, std::size_t done, std::size_t all, std::uint64_t begin) {
-    const double seconds = static_cast<double>(nanoseconds() - begin) * 1e-9;
-    std::fprintf(stderr, "%s: part %zu of %zu, %.0f s\n", part, done, all, seconds);
-}
+/// Says what is being done, how far the whole is, and how long it took once it is done.
+class Part {
+ public:
+    Part(const char* name, std::size_t number, std::size_t of) : m_name(name) {
+        std::fprintf(stderr, "%s: part %zu of %zu ...\n", m_name, number, of);
+    }
+    void done() const {
+        const double seconds = static_cast<double>(nanoseconds() - m_begin) * 1e-9;
+        std::fprintf(stderr, "%s: done in %.0f s\n", m_name, seconds);
+    }
+
+ private:
+    const char* m_name;
+    std::uint64_t m_begin = nanoseconds();
+};
 
 Result<bool> measureWork(Findings& f) {
     f.cases = chart::workCases(f.extent);
@@ -60,23 +72,23 @@ Result<bool> stabilityOf(Findings& f) {
 
 /// The parts, each of which leaves what it found behind. False: interrupted.
 Result<bool> measureAll(Findings& f) {
-    struct Part {
+    struct Piece {
         const char* name;
         std::function<Result<bool>()> measure;
     };
-    const Part parts[] = {
+    const Piece pieces[] = {
         {"work-precision", [&f] { return measureWork(f); }},
         {"sizes", [&f] { return chart::measureSizes(f.extent, f.sizes); }},
         {"scenes", [&f] { return chart::measureScenes(f.extent, f.scenes); }},
         {"prices of sharing", [&f] { return chart::measurePrices(f.extent, f.prices); }},
         {"effort by need", [&f] { return chart::measureEffort(f.extent, f.effort); }},
         {"stability", [&f] { return stabilityOf(f); }}};
-    std::size_t finished = 0;
-    for (const Part& part : parts) {
-        const std::uint64_t begin = nanoseconds();
-        const Result<bool> done = part.measure();
+    std::size_t begun = 0;
+    for (const Piece& piece : pieces) {
+        const Part part(piece.name, ++begun, std::size(pieces));
+        const Result<bool> done = piece.measure();
         if (!done || !*done) return done;
-        say(part.name, ++finished, std::size(parts), begin);
+        part.done();
     }
     return true;
 }
@@ -87,8 +99,8 @@ Status writeText(const std::filesystem::path& path, const std::string& text) {
     return file->write(std::as_bytes(std::span(text)));
 }
 
-/// The page, its pictures, its tables and the document itself.
-Status writeAll(const std::filesystem::path& folder, const Json& document) {
+/// The page, its tables and the document itself.
+Status writePage(const std::filesystem::path& folder, const Json& document) {
     if (const Status done = writeText(folder / "index.html", chart::pageOf(document)); !done)
         return done;
     if (const Status done = writeText(folder / "results.json", document.dump(1) + '\n'); !done)
@@ -97,22 +109,49 @@ Status writeAll(const std::filesystem::path& folder, const Json& document) {
         if (const Status done = writeText(folder / (table + ".csv"), chart::csvOf(document, table));
             !done)
             return done;
-    const Result<std::vector<chart::Picture>> pictures = chart::picturesOf(document);
-    if (!pictures) return pictures.error();
-    for (const chart::Picture& picture : *pictures)
-        if (const Status done = writeText(folder / (picture.name + ".svg"), picture.svg); !done)
-            return done;
     return Done{};
 }
 
-/// So that a folder that cannot be written to costs no work.
-Status openFolder(const std::filesystem::path& folder) {
-    std::error_code wrong;
-    std::filesystem::create_directories(folder, wrong);
-    if (wrong) return Error{"--out " + folder.string() + ": " + wrong.message()};
-    const Result<OutputFile> page = OutputFile::open((folder / "index.html").string());
-    return page ? Status(Done{}) : Status(page.error());
+/// The pictures beside it. `reached` gets how many; false: interrupted before the last.
+Result<bool> writePictures(const std::filesystem::path& folder, const Json& document,
+                           std::string& reached) {
+    const auto take = [&](const chart::Picture& picture, std::size_t number,
+                          std::size_t of) -> Result<bool> {
+        if (number == 1) std::fprintf(stderr, "pictures: %zu ...\n", of);
+        const Status done = writeText(folder / (picture.name + ".svg"), picture.svg);
+        if (!done) return done.error();
+        reached = std::to_string(number) + " of " + std::to_string(of) + " pictures";
+        return !interrupted() || number == of;
+    };
+    return chart::drawPictures(document, take);
 }
+
+/// The folder, which is tried before the work so that one that cannot be written to costs none, and
+/// is gone again if it was made in vain.
+class OutFolder {
+ public:
+    static Result<OutFolder> open(const std::filesystem::path& path) {
+        std::error_code wrong;
+        const bool made = std::filesystem::create_directories(path, wrong);
+        if (wrong) return Error{"--out: " + path.string() + ": cannot be made: " + wrong.message()};
+        OutFolder folder(made ? path : std::filesystem::path());
+        const Result<OutputFile> page = OutputFile::open((path / "index.html").string());
+        if (!page) return Error{"--out: " + page.error().message};
+        return folder;
+    }
+    ~OutFolder() {
+        std::error_code ignored;  // of one that is not empty
+        if (!m_made.empty()) std::filesystem::remove(m_made, ignored);
+    }
+    OutFolder(OutFolder&& other) noexcept : m_made(std::exchange(other.m_made, {})) {}
+    OutFolder& operator=(OutFolder&&) = delete;
+    OutFolder(const OutFolder&) = delete;
+    OutFolder& operator=(const OutFolder&) = delete;
+
+ private:
+    explicit OutFolder(std::filesystem::path made) : m_made(std::move(made)) {}
+    std::filesystem::path m_made;  // empty: it was there
+};
 
 /// What `huestep stability --json` said.
 Result<Json> readStability(const std::string& path) {
@@ -138,7 +177,8 @@ Answer makeCharts(const Options& options) {
         findings.stability = *rows;
     }
     const std::filesystem::path folder = options.folder;
-    if (const Status open = openFolder(folder); !open) return open.error();
+    const Result<OutFolder> open = OutFolder::open(folder);
+    if (!open) return open.error();
     findings.extent = options.extent();
     const std::uint64_t begin = nanoseconds();
     const Result<bool> done = measureAll(findings);
@@ -147,13 +187,17 @@ Answer makeCharts(const Options& options) {
     findings.seconds = static_cast<double>(nanoseconds() - begin) * 1e-9;
     if (!findings.finished) return stopped("nothing was written");
     const Json document = chart::documentOf(findings);
-    if (const Status written = writeAll(folder, document); !written) return written.error();
+    if (const Status written = writePage(folder, document); !written) return written.error();
+    std::string pictures;
+    const Result<bool> drawn = writePictures(folder, document, pictures);
+    if (!drawn) return drawn.error();
     if (options.json)
         print(document);
     else
         std::printf("%s\n%zu points, %zu verdicts, in %.0f s\npage %s\n", originLine().c_str(),
                     findings.points.size(), document.at("stability").size(), findings.seconds,
                     (folder / "index.html").string().c_str());
+    if (!*drawn) return stopped("with the page, the tables and " + pictures + " written");
     return Exit::Done;
 }
 
@@ -168,8 +212,8 @@ void addChart(Menu& menu) {
     sub->add_option("--stability", o->stability,
                     "Take the stability table from this file, that `huestep stability --json` "
                     "printed, instead of running the suite");
-    CLI::Option* quick =
-        sub->add_flag("--quick", o->quick, "Fewer and smaller runs: within two minutes");
+    CLI::Option* quick = sub->add_flag(
+        "--quick", o->quick, "Fewer and smaller runs: within two minutes on a quiet machine");
     sub->add_flag("--smoke", o->smoke,
                   "Hardly any runs: to see that it works, no times worth using")
         ->excludes(quick);

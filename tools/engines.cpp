@@ -4,6 +4,7 @@
 
 #include "core/box2d/engine.h"
 #include "core/solver/method.h"
+#include "tools/clock.h"
 #ifdef HUESTEP_HAS_BOX2D3
 #include "core/box2d/engine3.h"
 #endif
@@ -12,7 +13,8 @@ namespace huestep::tools {
 
 HuestepEngine::HuestepEngine(World world, const EngineSetup& setup)
     : m_world(std::move(world)),
-      m_executor(std::make_unique<Executor>(setup.threads, 0, setup.clock)),
+      m_executor(std::make_unique<Executor>(setup.threads, 0, setup.clock,
+                                            setup.shareAll ? nullptr : nanoseconds)),
       m_resources{m_executor.get(), setup.simd, setup.clock, setup.shareAll} {}
 
 Status HuestepEngine::step(std::span<const Command> commands) {
@@ -62,6 +64,16 @@ Status checkEngine(const std::string& name, const std::vector<std::string>& name
     std::string list;
     for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
     return Error{"--engine: there is no '" + name + "' here; there is " + list};
+}
+
+Status checkOwnWay(const std::string& engine, bool methodGiven, bool substepsGiven) {
+    if (engine == "huestep") return Done{};
+    if (substepsGiven)
+        return Error{"--substeps: " + engine +
+                     (engine == "box2d" ? " takes 8 velocity and 3 position iterations"
+                                        : " takes substeps of its own number")};
+    if (methodGiven) return Error{"--method: " + engine + " has its own; only huestep can choose"};
+    return Done{};
 }
 
 Result<Method> parseMethod(const std::string& name) {

@@ -24,6 +24,10 @@ Status checkEngine(const std::string& name, const std::vector<std::string>& name
 /// The same for `bench`: those to be measured, and Huestep by another method, as `huestep:pgs`.
 Status checkBenchEngine(const std::string& name);
 
+/// Refuses what an engine of its own way cannot be told: a method, substeps. `given`: whether the
+/// user said so. Of Huestep all is well.
+Status checkOwnWay(const std::string& engine, bool methodGiven, bool substepsGiven);
+
 /// A method by its name; fails with a sentence that shows the list.
 Result<Method> parseMethod(const std::string& name);
 

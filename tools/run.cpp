@@ -37,10 +37,8 @@ struct Options {
 Status checkOptions(const Options& o) {
     if (const Status known = checkEngine(o.engine, engineNames()); !known) return known;
     if (o.engine == "huestep") return Done{};
-    if (o.substeps != 0)
-        return Error{"--substeps: " + o.engine + " takes 8 velocity and 3 position iterations"};
-    if (!o.method.empty())
-        return Error{"--method: " + o.engine + " has its own; only huestep can choose"};
+    const Status own = checkOwnWay(o.engine, !o.method.empty(), o.substeps != 0);
+    if (!own) return own;
     if (o.explain) return Error{"--explain: only huestep says how its steps are laid out"};
     if (o.threads != 1 || o.simd != "auto")
         return Error{"--threads and --simd: " + o.engine +

@@ -34,6 +34,21 @@ std::string number(double value) {
     return digits;
 }
 
+std::string withUnit(double value, std::string_view unit) {
+    return unit == "1" ? number(value) : number(value) + " " + std::string(unit);
+}
+
+std::string unitText(std::string_view unit) {
+    return unit == "1" ? "-" : std::string(unit);
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return lower;
+}
+
 Table::Table(std::vector<std::string> head) {
     m_rows.push_back(std::move(head));
 }

@@ -21,8 +21,11 @@ using Clock = std::uint64_t (*)();
 class Executor {
  public:
     /// `threads`: 1 to 64. `shuffleSeed` ≠ 0 hands blocks to workers in an order drawn from it,
-    /// for tests. `clock`, if given, measures how long workers wait for each other.
-    explicit Executor(int threads, std::uint64_t shuffleSeed = 0, Clock clock = nullptr);
+    /// for tests. `clock`, if given, measures how long workers wait for each other. `judge`, if
+    /// given, is the clock by which the caller is left alone where the team does not pay: see
+    /// `workersNow`.
+    explicit Executor(int threads, std::uint64_t shuffleSeed = 0, Clock clock = nullptr,
+                      Clock judge = nullptr);
     ~Executor();
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
@@ -33,6 +36,14 @@ class Executor {
     /// Returns when all are done. With one block, or one thread, runs in the caller alone.
     void forBlocks(std::uint32_t count, std::uint32_t grain,
                    const std::function<void(std::uint32_t begin, std::uint32_t end)>& f);
+
+    /// How many workers the next piece of work between barriers should have: all, or the caller
+    /// alone for a while. That is where other programs want the cores: who waits at a barrier for a
+    /// worker that is not let run waits for milliseconds, and does so at every barrier. Four uses
+    /// of `onAllWorkers` in a row that would have been shorter alone are enough; then one use is
+    /// tried again after 64 calls, and after twice as many as long as it does not pay, up to 4096.
+    /// Time says who works here, and never what comes of it.
+    [[nodiscard]] int workersNow();
 
     /// Runs `f(worker)` once on every worker; within, `barrier()` may be called, by all alike.
     void onAllWorkers(const std::function<void(int worker)>& f);

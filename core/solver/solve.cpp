@@ -80,7 +80,7 @@ void solveGiant(const Job& job, const Batch& batch, Executor* executor,
     timer.done(Stage::Prepare);
 
     const BatchTask task = job.taskOf(batch, all);
-    const int workers = executor != nullptr && job.method.teams ? executor->threads() : 1;
+    const int workers = executor != nullptr && job.method.teams ? executor->workersNow() : 1;
     if (workers == 1) {
         job.method.solve(task, {});
     } else {

@@ -1,6 +1,8 @@
 // `huestep chart` as a user runs it: what it leaves in its folder.
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <filesystem>
 #include <regex>
 
 #include "tests/tools/chart/csv_reader.h"
@@ -161,6 +163,16 @@ TEST(Chart, ShowsTheVerdictsOfAFileInsteadOfRunningTheSuite) {
         huestep({"chart", "--out", folder / "charts", "--smoke", "--stability", path});
     EXPECT_EQ(ended.status, 2);
     EXPECT_NE(ended.err.find(path + ": not what"), std::string::npos) << ended.err;
+}
+
+TEST(Chart, LeavesNoEmptyFolderWhereItIsStoppedBeforeAnythingWasWritten) {
+    const TemporaryFolder folder;
+    Process process({huestepProgram, "chart", "--out", folder / "charts", "--quick"});
+    ASSERT_TRUE(process.catches(SIGINT, 20.0));
+    process.send(SIGINT);
+    EXPECT_EQ(process.wait(60.0), 130) << process.err();
+    EXPECT_NE(process.err().find("nothing was written"), std::string::npos) << process.err();
+    EXPECT_FALSE(std::filesystem::exists(folder / "charts"));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ std::string pageOf(const Json& document) {
         element("script id=\"document\" type=\"application/json\"", scriptText(document)));
 }
 
-Result<std::vector<Picture>> picturesOf(const Json& document) {
+Result<bool> drawPictures(const Json& document, const TakePicture& take) {
     const std::unique_ptr<duk_context, HeapOff> heap(duk_create_heap_default());
     if (!heap) return Error{"a chart could not be drawn: there is no memory"};
     // Read as JSON, for a script may not name as many constants as there are figures.
@@ -72,13 +72,21 @@ Result<std::vector<Picture>> picturesOf(const Json& document) {
                                           assets::library, assets::charts})
         if (const Result<std::string> done = evaluate(heap.get(), script); !done)
             return done.error();
-    const Result<std::string> drawn =
-        evaluate(heap.get(), "JSON.stringify(huestepCharts.pictures(echarts, document_))");
-    if (!drawn) return drawn.error();
-    std::vector<Picture> pictures;
-    for (const Json& each : Json::parse(*drawn))
-        pictures.push_back({each.at("name").get<std::string>(), each.at("svg").get<std::string>()});
-    return pictures;
+    const Result<std::string> count = evaluate(
+        heap.get(), "var pictures_ = huestepCharts.pictures(echarts, document_); pictures_.length");
+    if (!count) return count.error();
+    const std::size_t pictures = std::stoul(*count);
+    for (std::size_t i = 0; i < pictures; ++i) {
+        const Result<std::string> drawn =
+            evaluate(heap.get(), "JSON.stringify(pictures_[" + std::to_string(i) + "]())");
+        if (!drawn) return drawn.error();
+        const Json each = Json::parse(*drawn);
+        const Result<bool> goOn =
+            take({each.at("name").get<std::string>(), each.at("svg").get<std::string>()}, i + 1,
+                 pictures);
+        if (!goOn || !*goOn) return goOn;
+    }
+    return true;
 }
 
 }  // namespace huestep::tools::chart

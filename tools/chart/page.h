@@ -5,8 +5,9 @@
 /// here, by Duktape.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
-#include <vector>
 
 #include "core/result.h"
 #include "tools/text.h"
@@ -21,7 +22,12 @@ struct Picture {
     std::string svg;
 };
 
-/// Every chart of the document as SVG, for light backgrounds. Fails with what the script said.
-Result<std::vector<Picture>> picturesOf(const Json& document);
+/// Gets a picture, the how manieth it is and of how many; says whether to go on.
+using TakePicture =
+    std::function<Result<bool>(const Picture& picture, std::size_t number, std::size_t of)>;
+
+/// Every chart of the document as SVG, for light backgrounds, one after another: each takes up to a
+/// second. False: `take` said to stop. Fails with what the script or `take` said.
+Result<bool> drawPictures(const Json& document, const TakePicture& take);
 
 }  // namespace huestep::tools::chart

@@ -12,6 +12,7 @@
 #include "tools/lists.h"
 #include "tools/progress.h"
 #include "tools/stability/report.h"
+#include "tools/stability/run.h"
 #include "tools/stability/save.h"
 #include "tools/whole_number.h"
 
@@ -64,6 +65,13 @@ Result<std::vector<StabilityConfiguration>> configurationsOf(const Options& opti
             return Error{"--method: there is no '" + name + "'; there is " + list + "all"};
         }
         all.push_back({peer ? name : "huestep", peer ? "" : name, substeps});
+        if (std::count(names.begin(), names.end(), name) > 1)
+            return Error{"--method: " + name + " is given twice"};
+    }
+    if (std::none_of(all.begin(), all.end(), isHuestep)) {
+        const std::string& peer = all.front().engine;
+        if (const Status own = checkOwnWay(peer, false, substeps != 0); !own) return own.error();
+        if (options.threads != 1) return Error{"--threads: " + peer + " is run on one thread here"};
     }
     return all;
 }

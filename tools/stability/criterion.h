@@ -59,10 +59,13 @@ class Watch {
     explicit Watch(Criterion criterion)
         : m_criterion(std::move(criterion)), m_values(m_criterion.fold) {}
 
-    void look(const Moment& moment);
+    /// After step number `tick`, counted from 1.
+    void look(const Moment& moment, std::uint64_t tick);
 
     [[nodiscard]] const Criterion& criterion() const { return m_criterion; }
     [[nodiscard]] bool looked() const { return m_values.count() > 0; }
+    /// The tick after which it first did not hold; 0: never, or only the run as a whole says so.
+    [[nodiscard]] std::uint64_t brokenAt() const { return m_brokenAt; }
     /// So far; infinite before the first look.
     [[nodiscard]] double value() const { return m_values.value(); }
     [[nodiscard]] bool holds() const;
@@ -72,7 +75,8 @@ class Watch {
  private:
     Criterion m_criterion;
     Folding m_values;
-    double m_next = 0.0;  ///< s, when to look again
+    double m_next = 0.0;           ///< s, when to look again
+    std::uint64_t m_brokenAt = 0;  ///< tick
 };
 
 }  // namespace huestep::tools::stability

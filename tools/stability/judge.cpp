@@ -101,8 +101,8 @@ void Judge::follow(std::span<const BodyMotion> motions) {
 void Judge::lose(std::uint64_t tick, const std::string& why) {
     if (!m_lost.empty()) return;
     m_lost = why + " after " + secondsText(tick, m_stepSeconds);
-    m_hopeless = true;
-    if (!m_brokenAt) m_brokenAt = tick;
+    m_hopeless = m_broken = true;
+    m_lostAt = tick;
 }
 
 void Judge::lost(std::uint64_t tick, BodyId body) {
@@ -126,17 +126,15 @@ void Judge::watch(std::uint64_t tick, std::span<const Command> commands,
             m_energyScale;
     for (std::vector<Watch>* watches : {&m_own, &m_rules})
         for (Watch& watch : *watches) {
-            watch.look(moment);
-            if (watch.criterion().fold != Fold::Most || std::isinf(watch.value())) continue;
-            if (!watch.holds() && !m_brokenAt) m_brokenAt = tick;
-            if (!watch.holds() && watch.share() > hopelessShare && watch.criterion().from == 0.0)
-                m_hopeless = true;
+            watch.look(moment, tick);
+            if (watch.brokenAt() == 0) continue;
+            m_broken = true;
+            if (watch.share() > hopelessShare && watch.criterion().from == 0.0) m_hopeless = true;
         }
 }
 
 Judgement Judge::judgement() const {
     Judgement result;
-    result.brokenAt = m_brokenAt;
     const Watch* worst = extreme(m_own, Among::Failing, m_hopeless);
     if (worst == nullptr) worst = extreme(m_rules, Among::Failing, m_hopeless);
     result.pass = worst == nullptr && m_lost.empty();
@@ -148,15 +146,17 @@ Judgement Judge::judgement() const {
         result.limit = criterion.limit;
         result.unit = criterion.unit;
         result.what = criterion.what;
+        if (worst->brokenAt() != 0) result.brokenAt = worst->brokenAt();
     }
     if (!m_lost.empty()) {
+        result.brokenAt = m_lostAt;
         result.value = std::numeric_limits<double>::infinity();
         result.why = m_lost;
     } else if (!result.pass) {
-        result.why = result.what + ": " + number(result.value) + " " + result.unit + ", limit " +
-                     number(result.limit) + " " + result.unit;
-        if (m_brokenAt)
-            result.why += ", first broken after " + secondsText(*m_brokenAt, m_stepSeconds);
+        result.why = result.what + ": " + withUnit(result.value, result.unit) + ", limit " +
+                     withUnit(result.limit, result.unit);
+        if (result.brokenAt)
+            result.why += ", first broken after " + secondsText(*result.brokenAt, m_stepSeconds);
     }
     return result;
 }

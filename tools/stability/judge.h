@@ -21,8 +21,8 @@ struct Judgement {
     std::string unit;
     std::string what;
     std::string why;  ///< of a failure
-    /// Steps after which a criterion that must hold all the time was first broken, or something
-    /// was not finite; none: it holds, or only the run as a whole says that it does not.
+    /// Steps after which that criterion, if it must hold all the time, was first broken, or
+    /// something was not finite; none: it holds, or only the run as a whole says that it does not.
     std::optional<std::uint64_t> brokenAt;
 };
 
@@ -42,7 +42,7 @@ class Judge {
     void lost(std::uint64_t tick, BodyId body);
 
     /// Whether a criterion that must hold all the time is broken, or something is not finite.
-    [[nodiscard]] bool broken() const { return m_brokenAt.has_value(); }
+    [[nodiscard]] bool broken() const { return m_broken; }
     /// Whether it is beyond all measure: the rest of the run has nothing more to say.
     [[nodiscard]] bool hopeless() const { return m_hopeless; }
 
@@ -61,8 +61,9 @@ class Judge {
     double m_startEnergy;
     std::vector<Tracked> m_bodies;  ///< that were there at the start and still are
     std::vector<Watch> m_own, m_rules;
-    std::optional<std::uint64_t> m_brokenAt;
-    std::string m_lost;  ///< what is not finite; empty: nothing
+    bool m_broken = false;
+    std::string m_lost;          ///< what is not finite; empty: nothing
+    std::uint64_t m_lostAt = 0;  ///< tick
     bool m_hopeless = false;
 };
 

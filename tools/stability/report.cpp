@@ -30,8 +30,15 @@ std::string frontierText(int frontier) {
 }
 
 std::vector<std::string> cellsOf(const StabilityVerdict& v) {
-    return {"",     "  " + v.scene, resultText(v.pass, v.judged), number(v.value), number(v.limit),
-            v.unit, marginText(v),  frontierText(v.frontier),     v.what};
+    return {"",
+            "  " + v.scene,
+            resultText(v.pass, v.judged),
+            number(v.value),
+            number(v.limit),
+            unitText(v.unit),
+            marginText(v),
+            frontierText(v.frontier),
+            v.what};
 }
 
 std::vector<StabilityVerdict> verdictsOf(const std::vector<StabilityVerdict>& all, int row) {

@@ -105,5 +105,75 @@ TEST(Executor, MeasuresWaitsOnlyWithAClock) {
     EXPECT_EQ(plain.waited(), (std::vector<std::uint64_t>{0, 0}));
 }
 
+/// A clock that says what a test tells it, and how often it has been asked.
+struct ToldClock {
+    static inline std::atomic<std::uint64_t> now{0};
+    static inline std::atomic<int> asked{0};
+    static std::uint64_t read() {
+        ++asked;
+        return ++now;
+    }
+};
+
+/// A use with one barrier, to which the second worker comes once the caller sleeps, and so late.
+void useWhereTheCallerSleeps(Executor& executor, std::uint64_t nanoseconds) {
+    const int before = ToldClock::asked;
+    executor.onAllWorkers([&](int worker) {
+        if (worker == 1) {
+            // It is asked at the start of the use, and before the caller sleeps.
+            while (ToldClock::asked < before + 2) std::this_thread::yield();
+            ToldClock::now += nanoseconds;
+        }
+        executor.barrier(worker);
+    });
+}
+
+TEST(Executor, LeavesTheCallerAloneForAWhileWhereBarriersTakeLongerThanTheWork) {
+    constexpr std::uint64_t aWhile = 1'000'000'000;
+    Executor executor(2, 0, nullptr, ToldClock::read);
+    const auto usesAlone = [&] {
+        int uses = 0;
+        while (executor.workersNow() == 1) ++uses;
+        return uses;
+    };
+    for (int use = 0; use < 4; ++use) {
+        EXPECT_EQ(usesAlone(), 0) << "four in a row are needed, not " << use;
+        useWhereTheCallerSleeps(executor, aWhile);
+    }
+    EXPECT_EQ(usesAlone(), 64);
+    useWhereTheCallerSleeps(executor, aWhile);
+    EXPECT_EQ(usesAlone(), 128) << "tried again once, and in vain";
+    for (int use = 0; use < 10; ++use) useWhereTheCallerSleeps(executor, aWhile);
+    EXPECT_EQ(usesAlone(), 4096) << "and never longer than this";
+    useWhereTheCallerSleeps(executor, 0);
+    for (int use = 0; use < 4; ++use) {
+        EXPECT_EQ(usesAlone(), 0) << "one that pays is a new beginning";
+        useWhereTheCallerSleeps(executor, aWhile);
+    }
+    EXPECT_EQ(usesAlone(), 64);
+
+    Executor without(2);
+    for (int use = 0; use < 10; ++use)
+        without.onAllWorkers([&](int worker) { without.barrier(worker); });
+    EXPECT_EQ(without.workersNow(), 2) << "without a clock nobody judges";
+}
+
+TEST(Executor, UsesOfBothKindsInTurnLoseNothing) {
+    Executor executor(3);
+    std::atomic<std::uint32_t> early{0};
+    for (int use = 0; use < 500; ++use) {
+        std::vector<int> calls(6, 0);  // index i owns place i
+        executor.forBlocks(6, 1, [&](std::uint32_t begin, std::uint32_t) { ++calls[begin]; });
+        EXPECT_EQ(calls, std::vector<int>(6, 1));
+        std::atomic<std::uint32_t> came{0};
+        executor.onAllWorkers([&](int worker) {
+            ++came;
+            executor.barrier(worker);
+            early += came != 3;
+        });
+    }
+    EXPECT_EQ(early, 0u) << "someone passed a barrier before all had come";
+}
+
 }  // namespace
 }  // namespace huestep::test

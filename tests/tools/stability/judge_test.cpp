@@ -65,6 +65,19 @@ TEST(Judge, PassesABoxThatMovedBy49CentimetresAndFailsOneThatMovedBy51) {
     }
 }
 
+TEST(Judge, SaysWhenTheCriterionThatItNamesWasFirstBroken) {
+    // Turned too far after tick 2 by a little, moved too far after tick 4 by ten times as much.
+    Told told(boxOnFloor(), {moved, turned});
+    told.hold();
+    told.motions[1].rotation = rotationOf(0.6f);
+    told.hold(2);
+    told.motions[1].position.x += 5.0f;
+    told.hold(2);
+    const Judgement judgement = told.judge.judgement();
+    EXPECT_EQ(judgement.what, "moved");
+    EXPECT_EQ(judgement.brokenAt.value_or(0), 4u);
+}
+
 TEST(Judge, MeasuresATurnTheShorterWayRound) {
     for (const auto& [angle, passes] : {std::pair{0.49f, true}, {-0.51f, false}, {6.2f, true}}) {
         Told told(boxOnFloor(), {turned});

@@ -775,16 +775,21 @@ var huestepCharts = (function () {
       /** @type {any} */ (effort(doc, look)));
   }
 
-  /** @param {any} library ECharts @param {Row} doc @returns {{name: string, svg: string}[]} */
+  /**
+   * One function a picture: each takes a while, and whoever draws them may be told to stop.
+   * @param {any} library ECharts @param {Row} doc @returns {(() => {name: string, svg: string})[]}
+   */
   function pictures(library, doc) {
     /** @type {Look} */
     var look = { dark: false, narrow: false, picture: true };
     return charts(doc, look).concat(stability(doc, look)).map(function (chart) {
-      var drawing = library.init(null, null, { renderer: 'svg', ssr: true, width: 1000, height: chart.height + 60 });
-      drawing.setOption(chart.option);
-      var svg = drawing.renderToSVGString();
-      drawing.dispose();
-      return { name: chart.name, svg: svg };
+      return function () {
+        var drawing = library.init(null, null, { renderer: 'svg', ssr: true, width: 1000, height: chart.height + 60 });
+        drawing.setOption(chart.option);
+        var svg = drawing.renderToSVGString();
+        drawing.dispose();
+        return { name: chart.name, svg: svg };
+      };
     });
   }
 
