@@ -37,6 +37,12 @@ Result<Address> parseAddress(std::string_view text, bool mayBeZero) {
     return address;
 }
 
+bool isLoopback(const Address& address) {
+    return address.host == "::1" ||
+           (address.host.starts_with("127.") &&
+            address.host.find_first_not_of("0123456789.") == std::string::npos);
+}
+
 std::string toText(const Address& address) {
     std::string text = address.host;
     if (text.find(':') != std::string::npos) text.insert(0, 1, '[').push_back(']');

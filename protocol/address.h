@@ -19,6 +19,9 @@ struct Address {
 /// free one and is refused unless `mayBeZero`. The sentence shows the text and what is wrong.
 Result<Address> parseAddress(std::string_view text, bool mayBeZero);
 
+/// Whether only this machine can be there: 127.x.y.z or ::1, as numbers.
+bool isLoopback(const Address& address);
+
 /// HOST:PORT, with brackets around an IPv6 number.
 std::string toText(const Address& address);
 

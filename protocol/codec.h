@@ -41,6 +41,7 @@ MessageType typeOf(const Message& message);
 
 // Most entries of each list, bytes of each text and highest values, checked by `decode`.
 inline constexpr std::size_t maxSessionName = 64;
+inline constexpr std::size_t maxTicketBytes = 256;
 inline constexpr std::size_t maxByeText = 256;
 inline constexpr std::size_t maxReportText = 128;
 inline constexpr std::size_t maxCommandsPerIntent = 64;

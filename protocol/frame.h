@@ -57,6 +57,8 @@ class FrameSplitter {
 
     /// Bytes held of a frame that is not complete.
     [[nodiscard]] std::size_t buffered() const { return m_pending.size(); }
+    /// Bytes that the frame begun has as far as is known: of its header, or in all.
+    [[nodiscard]] std::size_t expected() const { return m_need; }
     /// Bytes of the stream that have become messages: where the next frame starts.
     [[nodiscard]] std::uint64_t offset() const { return m_offset; }
     [[nodiscard]] bool failed() const { return m_failed; }

@@ -35,6 +35,7 @@ struct Hello {
   resume @6 :Data;                    # empty, or the 16 bytes of the token of an earlier Welcome
   haveTick @7 :UInt64;                # with resume: last tick the client holds a world of, or 0
   haveHash @8 :UInt64;                # motion root of that world
+  ticket @9 :Data;                    # empty, or a sealed ticket (protocol/ticket.h), <= 256 bytes
 }
 
 struct Welcome {

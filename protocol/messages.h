@@ -42,6 +42,8 @@ struct Hello {
     /// server may send the tail alone; 0: needs a snapshot.
     std::uint64_t haveTick = 0;
     std::uint64_t haveHash = 0;  ///< motion root after `haveTick`
+    /// Sealed, as an issuer gave it (protocol/ticket.h); empty: none.
+    std::vector<std::byte> ticket;
     friend bool operator==(const Hello&, const Hello&) = default;
 };
 
@@ -169,6 +171,7 @@ enum class ByeReason : std::uint16_t {
     Timeout,
     ServerStops,
     ResumeRefused,
+    TicketRefused,
 };
 
 /// Either way: the connection ends.

@@ -14,7 +14,7 @@ namespace huestep::protocol::flat {
 
 // clang-format off
 template <class M> inline constexpr Layout layoutOf{};
-template <> inline constexpr Layout layoutOf<Hello>{6, 2};
+template <> inline constexpr Layout layoutOf<Hello>{6, 3};
 template <> inline constexpr Layout layoutOf<Welcome>{6, 2};
 template <> inline constexpr Layout layoutOf<Intent>{4, 1};
 template <> inline constexpr Layout layoutOf<Frame>{3, 2};
@@ -308,6 +308,7 @@ void fields(Io& io, M& m) {
         tokenField(io, 1, m.resume, true);
         io.number("haveTick", 32, m.haveTick);
         io.number("haveHash", 40, m.haveHash);
+        io.numbers("ticket", 2, m.ticket, maxTicketBytes);
     } else if constexpr (std::is_same_v<Kind, Welcome>) {
         welcomeFields(io, m);
     } else if constexpr (std::is_same_v<Kind, Intent>) {
@@ -341,7 +342,7 @@ void fields(Io& io, M& m) {
         io.number("sinceClose", 12, m.sinceClose);
         io.number("tick", 16, m.tick);
     } else if constexpr (std::is_same_v<Kind, Bye>) {
-        io.choice("reason", 0, m.reason, ByeReason::ResumeRefused);
+        io.choice("reason", 0, m.reason, ByeReason::TicketRefused);
         io.text("text", 0, m.text, maxByeText);
         io.flag(16, m.mayResume);
     } else {  // the end of a snapshot, a request for one or for hashes

@@ -60,7 +60,8 @@ void putDefinitions(schema::View::Builder to, const View& view) {
 }  // namespace
 
 std::size_t contentWords(const Hello& message) {
-    return textWords(message.session) + (message.resume ? byteWords(message.resume->size()) : 0);
+    return textWords(message.session) + (message.resume ? byteWords(message.resume->size()) : 0) +
+           byteWords(message.ticket.size());
 }
 std::size_t contentWords(const Welcome& message) {
     return textWords(message.session) + byteWords(message.resume.size());
@@ -102,6 +103,7 @@ void put(schema::Hello::Builder to, const Hello& message) {
     if (message.resume) to.setResume(dataOf(message.resume->data(), message.resume->size()));
     to.setHaveTick(message.haveTick);
     to.setHaveHash(message.haveHash);
+    if (!message.ticket.empty()) to.setTicket(dataOf(message.ticket.data(), message.ticket.size()));
 }
 
 void put(schema::Welcome::Builder to, const Welcome& message) {

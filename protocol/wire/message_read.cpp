@@ -151,6 +151,10 @@ Hello read(Reading& in, schema::Hello::Reader from) {
     if (resume.size() > 0) message.resume = resumeToken(in, resume);
     message.haveTick = from.getHaveTick();
     message.haveHash = from.getHaveHash();
+    const auto ticket = from.getTicket();
+    in.sizeOf("ticket", ticket, maxTicketBytes, 1);
+    const auto bytes = std::as_bytes(std::span(ticket.begin(), ticket.size()));
+    message.ticket.assign(bytes.begin(), bytes.end());
     return message;
 }
 
@@ -259,7 +263,7 @@ Ping read(Reading&, schema::Ping::Reader from) {
 }
 
 Bye read(Reading& in, schema::Bye::Reader from) {
-    return {in.choice("reason", from.getReason(), ByeReason::ResumeRefused),
+    return {in.choice("reason", from.getReason(), ByeReason::TicketRefused),
             text(in, "text", from.getText(), maxByeText), from.getMayResume()};
 }
 

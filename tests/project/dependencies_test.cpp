@@ -63,6 +63,8 @@ TEST(Dependencies, ThirdPartyHeadersStandOnlyInTheFoldersThatOwnThem) {
                                         {"server/host.", "server/listening.", "server/sockets.",
                                          "server/web_", "client/connection.", "client/player."}},
                                        {"libwebsockets", {"server/web_"}},
+                                       {"sodium", {"protocol/keys."}},
+                                       {"openssl/", {"protocol/tls.", "tests/"}},
                                        {"spdlog/", {"server/log.", "tools/"}},
                                        {"CLI/", {"tools/"}},
                                        {"toml++/", {"tools/"}},

@@ -377,14 +377,23 @@ TEST(CodecLimits, NumbersMustBeFinite) {
     EXPECT_EQ(answerTo(view), "View.poses[1].s: not a finite number");
 }
 
+TEST(CodecLimits, Tickets) {
+    Hello hello;
+    hello.session = "s";
+    hello.ticket.resize(maxTicketBytes);
+    EXPECT_EQ(answerTo(hello), "accepted");
+    hello.ticket.resize(maxTicketBytes + 1);
+    EXPECT_EQ(answerTo(hello), "Hello.ticket: 257 entries, at most 256");
+}
+
 TEST(CodecLimits, ValuesBeyondAnEnumAreRefused) {
     Hello hello;
     hello.session = "s";
     hello.role = static_cast<Role>(2);
     EXPECT_EQ(answerTo(hello), "Hello.role: unknown value 2");
     Bye bye;
-    bye.reason = static_cast<ByeReason>(12);
-    EXPECT_EQ(answerTo(bye), "Bye.reason: unknown value 12");
+    bye.reason = static_cast<ByeReason>(13);
+    EXPECT_EQ(answerTo(bye), "Bye.reason: unknown value 13");
     Spawn spawn = samples::sampleSpawn();
     spawn.bodies[1].type = static_cast<BodyType>(3);
     EXPECT_EQ(answerTo(Frame{0, {{0, 1, spawn}}, {}, 0, 0}),

@@ -206,6 +206,8 @@ inline Hello randomHello(Draw& draw) {
     if (draw.coin()) hello.resume = randomToken(draw);
     hello.haveTick = draw.bits();
     hello.haveHash = draw.bits();
+    hello.ticket.resize(draw.coin() ? draw.below(maxTicketBytes + 1) : 0);
+    for (std::byte& byte : hello.ticket) byte = static_cast<std::byte>(draw.below(256));
     return hello;
 }
 
