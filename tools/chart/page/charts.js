@@ -237,7 +237,8 @@ var huestepCharts = (function () {
         : { left: 78, right: 226, top: look.picture ? 56 + 14 * lineCount(below, 130) : 18, bottom: 56 },
       legend: look.narrow
         ? { itemWidth: 16, itemHeight: 10, itemGap: 5, bottom: 0, left: 0, right: 0, textStyle: { color: ink.text, fontSize: 11 } }
-        : { orient: 'vertical', right: 6, top: look.picture ? 56 : 14, textStyle: { color: ink.text, fontSize: 12 }, itemGap: 7 },
+        // Outside a browser widths of texts are guessed, too short.
+        : { orient: 'vertical', right: look.picture ? 32 : 6, top: look.picture ? 56 : 14, textStyle: { color: ink.text, fontSize: 12 }, itemGap: 7 },
       tooltip: {
         trigger: 'item',
         confine: true,
