@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "core/math/finite.h"
 #include "core/solver/body_lanes.h"
@@ -275,6 +276,29 @@ void Rows::writeRow(std::uint32_t lane, const Contact& contact) {
     writeLane<ContactFields>(contact.row, rows, lane % blockLanes);
     for (std::size_t i = 0; i < 2; ++i) {
         writeLane<ContactPointFields>(contact.points[i], rows.points[i], lane % blockLanes);
+    }
+}
+
+void Rows::storeImpulses(std::uint32_t block, std::span<const std::uint32_t> recordOfLane,
+                         std::span<ContactState> records) const {
+    static_assert(offsetof(ContactState, tangentImpulse) ==
+                  offsetof(ContactState, normalImpulse) + 2 * sizeof(float));
+    const ContactBlock& rows = blocks[block];
+    ContactState nowhere{};
+    for (std::uint32_t lane = 0; lane < blockLanes; lane += 4) {
+        std::array<F4, 4> of;
+        transpose4(rows.points[0].normalImpulse + lane, rows.points[1].normalImpulse + lane,
+                   rows.points[0].tangentImpulse + lane, rows.points[1].tangentImpulse + lane,
+                   of[0], of[1], of[2], of[3]);
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            const std::uint32_t record = recordOfLane[lane + k];
+            ContactState& to = record == none ? nowhere : records[record];
+            // Both pairs lie side by side: one store.
+            storeLanes<4>(reinterpret_cast<float*>(&to) +
+                              offsetof(ContactState, normalImpulse) / sizeof(float),
+                          of[k]);
+            to.rollingImpulse = rows.rollingImpulse[lane + k];
+        }
     }
 }
 

@@ -114,6 +114,9 @@ class Rows {
                 {rows.points[0].tangentImpulse[at], rows.points[1].tangentImpulse[at]},
                 rows.rollingImpulse[at]};
     }
+    /// The impulses of a block's lanes into their records; `none`: into none.
+    void storeImpulses(std::uint32_t block, std::span<const std::uint32_t> recordOfLane,
+                       std::span<ContactState> records) const;
     /// Writes a contact's row to its lane, whose bodies stay.
     void writeRow(std::uint32_t lane, const Contact& contact);
 

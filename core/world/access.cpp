@@ -75,18 +75,17 @@ void World::Data::contactsToState() const {
         state.contacts[record] = stateOf(contact, state.shapes[contact.placeA].id,
                                          state.shapes[contact.placeB].id, impulsesOf(contact));
     }
-    // Records lie in key order and lanes by colour: those a while ahead are fetched in time.
-    constexpr std::uint32_t ahead = 2 * blockLanes;
-    const auto lanes = static_cast<std::uint32_t>(gathered.recordOfLane.size());
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-        const std::uint32_t later = gathered.recordOfLane[std::min(lane + ahead, lanes - 1)];
-        if (later != none) __builtin_prefetch(&state.contacts[later], 1);
-        if (gathered.recordOfLane[lane] == none) continue;
-        const ContactImpulses now = acc.rows.impulses(lane);
-        ContactState& record = state.contacts[gathered.recordOfLane[lane]];
-        record.normalImpulse = now.normal;
-        record.tangentImpulse = now.tangent;
-        record.rollingImpulse = now.rolling;
+    // Records lie in key order and lanes by colour: those of a later block are fetched in time.
+    constexpr std::uint32_t ahead = 2;
+    const std::span<const std::uint32_t> recordOfLane = gathered.recordOfLane;
+    const auto blocks = static_cast<std::uint32_t>(recordOfLane.size() / blockLanes);
+    for (std::uint32_t block = 0; block < blocks; ++block) {
+        const std::uint32_t later = std::min(block + ahead, blocks - 1);
+        for (const std::uint32_t record : recordOfLane.subspan(later * blockLanes, blockLanes)) {
+            if (record != none) __builtin_prefetch(&state.contacts[record], 1);
+        }
+        acc.rows.storeImpulses(block, recordOfLane.subspan(block * blockLanes, blockLanes),
+                               state.contacts);
     }
     contactsInState = true;
 }
