@@ -159,7 +159,10 @@ void Connection::onConnect(uv_connect_t* request, int status) {
     self.m_splitter.emplace();
     uv_tcp_nodelay(&socket.tcp, 1);
     uv_read_start(asStream(&socket.tcp), onAlloc, onRead);
-    self.m_events.connected();
+    self.m_tls.reset();
+    if (!self.m_destination.tls) return self.m_events.connected();
+    self.m_tls.emplace(*self.m_destination.tls, self.m_destination.address.host);
+    self.write(self.m_tls->takeOutput());
 }
 
 void Connection::onAlloc(uv_handle_t* handle, std::size_t, uv_buf_t* buffer) {
@@ -181,13 +184,32 @@ void Connection::onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buff
                                         : uv_strerror(static_cast<int>(count)));
     }
     const std::span<const char> bytes(buffer->base, static_cast<std::size_t>(count));
-    socket.owner->received(std::as_bytes(bytes));
+    socket.owner->arrived(std::as_bytes(bytes));
+}
+
+void Connection::arrived(std::span<const std::byte> bytes) {
+    m_bytesIn += bytes.size();
+    m_pulse.heard();
+    if (m_tls) return arrivedByTls(bytes);
+    received(bytes);
+}
+
+void Connection::arrivedByTls(std::span<const std::byte> bytes) {
+    const Socket* before = m_socket;
+    const bool first = !m_tls->established();
+    std::vector<std::byte> plain;
+    const Status taken = m_tls->receive(bytes, plain);
+    write(m_tls->takeOutput());
+    if (m_socket == before && first && m_tls->established()) m_events.connected();
+    if (m_socket == before && !plain.empty()) received(plain);
+    if (taken || m_socket != before) return;
+    // A certificate that is not accepted will not be at the next attempt.
+    if (first) return giveUp(taken.error().message);
+    drop(taken.error().message);
 }
 
 void Connection::received(std::span<const std::byte> bytes) {
-    m_bytesIn += bytes.size();
     m_failures = 0;
-    m_pulse.heard();
     std::vector<protocol::Message> messages;
     const Status fed = m_splitter->feed(bytes, messages);
     m_framed = m_framed || !messages.empty();
@@ -204,9 +226,17 @@ void Connection::received(std::span<const std::byte> bytes) {
 
 void Connection::send(const protocol::Message& message) {
     if (!m_socket || !m_socket->connected) return;
+    if (!m_tls) return write(protocol::encode(message));
+    if (!m_tls->established()) return;
+    m_tls->send(protocol::encode(message));
+    write(m_tls->takeOutput());
+}
+
+void Connection::write(std::vector<std::byte> bytes) {
+    if (bytes.empty()) return;
     uv_stream_t* stream = asStream(&m_socket->tcp);
     auto write = std::make_unique<Write>();
-    write->bytes = protocol::encode(message);
+    write->bytes = std::move(bytes);
     if (uv_stream_get_write_queue_size(stream) + write->bytes.size() > maxUnsentBytes) {
         return drop("the server does not read what is sent");
     }
@@ -240,6 +270,13 @@ void Connection::letGo() {
     if (!m_socket) return;
     uv_timer_stop(&m_handles->timer);
     uv_timer_stop(&m_handles->beat);
+    if (m_tls && m_socket->connected) {
+        m_tls->close();
+        const std::vector<std::byte> last = m_tls->takeOutput();
+        uv_buf_t buffer = uv_buf_init(const_cast<char*>(reinterpret_cast<const char*>(last.data())),
+                                      static_cast<unsigned>(last.size()));
+        if (!last.empty()) uv_try_write(asStream(&m_socket->tcp), &buffer, 1);
+    }
     Socket* socket = std::exchange(m_socket, nullptr);
     socket->owner = nullptr;
     if (!socket->connected ||

@@ -19,6 +19,7 @@
 #include "core/result.h"
 #include "protocol/address.h"
 #include "protocol/frame.h"
+#include "protocol/tls.h"
 
 namespace huestep::client {
 
@@ -37,6 +38,9 @@ struct Destination {
     /// Without a byte from the server for so long, with Pings in between, the connection is lost.
     std::uint64_t silenceMs = 10'000;
     Resolve resolve = askSystem;
+    /// What is spoken below the protocol; null: nothing. The server's certificate must bear the
+    /// host of `address`.
+    std::shared_ptr<const protocol::TlsContext> tls{};
 };
 
 class Connection {
@@ -85,7 +89,10 @@ class Connection {
     void attempt();
     void attemptLater();
     void tryNext(const std::string& why);
+    void arrived(std::span<const std::byte> bytes);
+    void arrivedByTls(std::span<const std::byte> bytes);
     void received(std::span<const std::byte> bytes);
+    void write(std::vector<std::byte> bytes);
     void giveUp(const std::string& why);
     void letGo();
 
@@ -100,6 +107,7 @@ class Connection {
     Pulse m_pulse;
     std::uint64_t m_pings = 0;
     std::optional<protocol::FrameSplitter> m_splitter;
+    std::optional<protocol::TlsStream> m_tls;  ///< of the socket that is connected
     bool m_framed = false;  ///< a frame has come, on this connection or one before
     std::uint32_t m_failures = 0;
     bool m_stopped = false;

@@ -24,6 +24,7 @@ Destination destinationOf(const PlayerConfig& config, protocol::Address address)
     out.address = std::move(address);
     out.silenceMs = static_cast<std::uint64_t>(config.silenceSeconds * 1e3);
     out.resolve = config.resolve;
+    out.tls = config.tls;
     return out;
 }
 
@@ -55,7 +56,8 @@ class Life {
                                   m_config.fingerprint,
                                   {m_executor.get()},
                                   30,
-                                  m_config.prediction}),
+                                  m_config.prediction,
+                                  m_config.ticket}),
           m_in(m_config.lag),
           m_out(LagRules{m_config.lag.delay, m_config.lag.jitter, m_config.lag.seed + 1}) {
         if (!m_config.bot) m_config.bot = makeIdleBot();

@@ -20,6 +20,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/bot.h"
 #include "client/lag.h"
@@ -27,6 +28,7 @@
 #include "client/replica.h"
 #include "core/result.h"
 #include "protocol/messages.h"
+#include "protocol/tls.h"
 
 namespace huestep::client {
 
@@ -35,9 +37,11 @@ struct PlayerConfig {
     std::string session;
     protocol::Role role = protocol::Role::Player;
     protocol::Fingerprint fingerprint;
-    std::unique_ptr<Bot> bot;  ///< none: idle
-    std::uint64_t ticks = 0;   ///< frames to follow before leaving; 0: no end
-    int threads = 1;           ///< that step this client's world
+    std::vector<std::byte> ticket{};                    ///< where the server asks for one
+    std::shared_ptr<const protocol::TlsContext> tls{};  ///< null: none is spoken
+    std::unique_ptr<Bot> bot;                           ///< none: idle
+    std::uint64_t ticks = 0;  ///< frames to follow before leaving; 0: no end
+    int threads = 1;          ///< that step this client's world
     bool handleSignals = true;
     std::atomic<bool>* stop = nullptr;  ///< set it to end within 100 ms, whatever is waited for
     /// How long to try: for the first connection, and for each reconnection.

@@ -36,6 +36,7 @@ void Replica::connected(Instant) {
     hello.session = m_config.session;
     hello.role = m_config.role;
     hello.resume = m_token;
+    hello.ticket = m_config.ticket;
     if (m_timeline) {
         hello.haveTick = m_timeline->confirmed();
         hello.haveHash = m_timeline->confirmedRoot();

@@ -41,6 +41,7 @@ struct ReplicaConfig {
     std::uint32_t checkpointEvery = 30;  ///< ticks from one Intent with a checkpoint to the next
     /// For a player: run ahead of the frames by these rules. None: the world is where frames led.
     std::optional<PredictionRules> prediction = std::nullopt;
+    std::vector<std::byte> ticket{};  ///< for the first Hello, where the server asks for one
 };
 
 class Replica {
@@ -50,6 +51,8 @@ class Replica {
     /// A connection is up: sends Hello. The world and the seat of an earlier one are kept.
     void connected(Instant now);
     void disconnected();
+    /// For the Hellos to come: the ticket that the server asks for.
+    void showTicket(std::vector<std::byte> ticket) { m_config.ticket = std::move(ticket); }
 
     /// Takes one message of the server. A sentence: the connection must end (a Bye is queued).
     Status receive(protocol::Message message, Instant now);

@@ -11,6 +11,32 @@ namespace huestep::server {
 
 using protocol::ByeReason;
 
+void count(Counters& counters, TicketDesk::Verdict verdict) {
+    switch (verdict) {
+        case TicketDesk::Verdict::Taken:
+            ++counters.ticketsTaken;
+            break;
+        case TicketDesk::Verdict::Missing:
+            ++counters.ticketsMissing;
+            break;
+        case TicketDesk::Verdict::Forged:
+            ++counters.ticketsForged;
+            break;
+        case TicketDesk::Verdict::Misplaced:
+            ++counters.ticketsMisplaced;
+            break;
+        case TicketDesk::Verdict::Expired:
+            ++counters.ticketsExpired;
+            break;
+        case TicketDesk::Verdict::Used:
+            ++counters.ticketsUsed;
+            break;
+        case TicketDesk::Verdict::TooMany:
+            ++counters.ticketsTooMany;
+            break;
+    }
+}
+
 Connection::Connection(ConnectionId id, std::string peer, ConnectionContext& context, Instant now)
     : m_id(id),
       m_peer(std::move(peer)),
@@ -19,6 +45,7 @@ Connection::Connection(ConnectionId id, std::string peer, ConnectionContext& con
       m_accepted(now),
       m_heard(now),
       m_drained(now),
+      m_bytes(context.limits.bytesPerSecond, context.limits.byteBurst, now),
       m_messages(context.limits.messagesPerSecond, context.limits.messageBurst, now),
       m_heavy(context.limits.heavyPerSecond, context.limits.heavyBurst, now),
       m_notes(context.limits.notesPerSecond, context.limits.noteBurst, now) {}
@@ -26,15 +53,20 @@ Connection::Connection(ConnectionId id, std::string peer, ConnectionContext& con
 bool Connection::gate(protocol::MessageType, std::uint32_t bytes, const void* self) {
     const auto* connection = static_cast<const Connection*>(self);
     const Limits& limits = connection->m_context.limits;
-    return bytes <= (connection->greeted() ? limits.messageBytes : limits.helloBytes);
+    const bool known = connection->m_phase == Phase::Live || connection->m_phase == Phase::Ending;
+    return bytes <= (known ? limits.messageBytes : limits.helloBytes);
 }
 
 // Input ------------------------------------------------------------------------------------------
 
 void Connection::receive(std::span<const std::byte> bytes, Instant now) {
     m_context.counters.bytesIn += bytes.size();
+    if (m_phase == Phase::Ending) m_letGo += bytes.size();
     if (m_phase == Phase::Ending || bytes.empty()) return;
     m_heard = now;
+    if (!m_bytes.take(now, static_cast<double>(bytes.size()))) {
+        return end(ByeReason::TooFast, "more bytes than the agreed rate", true, now);
+    }
     std::vector<protocol::Message> messages;
     const Status fed = m_splitter.feed(bytes, messages);
     for (protocol::Message& message : messages) {
@@ -93,11 +125,12 @@ void Connection::on(const protocol::Hello& hello, Instant now) {
     if (!session) {
         return end(ByeReason::UnknownSession, "there is no session of that name here", false, now);
     }
+    const bool plays = hello.role == protocol::Role::Player && session->hasPlayers();
+    const bool resumes = plays && hello.resume;  // a token was given to a holder of a ticket
+    if (!resumes && !admit(hello, now)) return;
     m_session = session;
     m_hello = hello;
-    if (hello.role == protocol::Role::Spectator || !session->hasPlayers()) {
-        return enter(*session, 0, now);
-    }
+    if (!plays) return enter(*session, 0, now);
     if (hello.resume) {
         const Result<Seats::Resumed> seat = session->seats().resume(*hello.resume, now);
         if (!seat) return end(ByeReason::ResumeRefused, seat.error().message, false, now);
@@ -105,7 +138,32 @@ void Connection::on(const protocol::Hello& hello, Instant now) {
         m_context.takeOver(*session, seat->player, m_id, now);
         return enter(*session, seat->player, now);
     }
-    const std::optional<JoinId> join = session->seats().join();
+    takeSeat(*session, now);
+}
+
+/// Whether the ticket lets it in, where tickets are asked for; else it is ended.
+bool Connection::admit(const protocol::Hello& hello, Instant now) {
+    if (!m_context.tickets) return true;
+    TicketDesk::Answer answer = m_context.tickets->take(hello.ticket, hello.session, hello.role);
+    count(m_context.counters, answer.verdict);
+    m_holder = std::move(answer.player);
+    if (answer.verdict == TicketDesk::Verdict::Taken) return true;
+    end(ByeReason::TicketRefused, answer.sentence, false, now);
+    return false;
+}
+
+void Connection::takeSeat(Session& session, Instant now) {
+    Seats& seats = session.seats();
+    if (!m_holder.empty()) {
+        if (seats.joining(m_holder)) {
+            return end(ByeReason::TicketRefused, "this player is joining already", false, now);
+        }
+        if (const PlayerId player = seats.reclaim(m_holder, now)) {
+            m_context.takeOver(session, player, m_id, now);
+            return enter(session, player, now);
+        }
+    }
+    const std::optional<JoinId> join = seats.join(m_holder);
     if (!join) return end(ByeReason::SessionFull, "every seat is taken", false, now);
     m_join = *join;
     m_phase = Phase::Joining;
@@ -264,7 +322,7 @@ void Connection::advance(Instant now) {
 void Connection::checkDeadlines(Instant now) {
     const Limits& limits = m_context.limits;
     const bool slowHello = m_phase == Phase::Greeting && now > m_accepted + limits.helloTime;
-    const bool slowMessage = m_partialSince != 0 && now > m_partialSince + limits.partialTime;
+    const bool slowMessage = m_partialSince != 0 && now > partialBy();
     const bool silent = now > m_heard + limits.silenceTime;
     if (slowHello || slowMessage || silent) {
         ++m_context.counters.timeouts;
@@ -278,6 +336,12 @@ void Connection::checkDeadlines(Instant now) {
         m_pinged = now;
         send(protocol::Ping{++m_pingNonce, false});
     }
+}
+
+Instant Connection::partialBy() const {
+    const Limits& limits = m_context.limits;
+    const double pace = static_cast<double>(m_splitter.expected()) / limits.partialBytesPerSecond;
+    return m_partialSince + limits.partialTime + static_cast<Instant>(pace * 1e9);
 }
 
 void Connection::checkPace(Instant now) {
@@ -327,7 +391,10 @@ void Connection::answerQueries(Instant now) {
         if (answer == Rebuilder::Answer::Coming && now <= since + m_context.limits.rebuildPatience)
             break;
         std::vector<std::uint64_t> leaves;
-        if (const World* world = rebuilder.find(tick)) leaves = world->motionLeaves();
+        const bool full = m_lastUnsent + m_outboxBytes >= m_context.limits.lowWater;
+        const World* world = rebuilder.find(tick);
+        if (world && full) ++m_context.counters.hashesLetGo;
+        if (world && !full) leaves = world->motionLeaves();
         std::size_t first = 0;
         do {
             const std::size_t count = std::min(protocol::maxLeaves, leaves.size() - first);
@@ -445,10 +512,13 @@ bool Connection::finished() const {
 void Connection::end(ByeReason reason, std::string text, bool mayResume, Instant now) {
     if (m_phase == Phase::Ending) return;
     if (reason == ByeReason::TooFast) ++m_context.counters.tooFast;
-    line("bye")
-        .with("reason", static_cast<std::uint64_t>(reason))
-        .with("text", text)
-        .to(m_context.log, reason == ByeReason::ServerStops ? Severity::Info : Severity::Warning);
+    if (mayNote(now)) {
+        line("bye")
+            .with("reason", static_cast<std::uint64_t>(reason))
+            .with("text", text)
+            .to(m_context.log,
+                reason == ByeReason::ServerStops ? Severity::Info : Severity::Warning);
+    }
     text = protocol::cutText(std::move(text), protocol::maxByeText);
     // Whatever was to be said before is moot; the Bye alone goes out.
     m_outbox.clear();
@@ -475,6 +545,25 @@ void Connection::lost(Instant now) {
     m_closeBy = now;
 }
 
+void Connection::refusedByTls(const std::string& why, Instant now) {
+    ++m_context.counters.badTls;
+    if (mayNote(now)) line("tls").with("text", why).to(m_context.log, Severity::Warning);
+    lost(now);
+}
+
+void Connection::displace(Instant now) {
+    ++m_context.counters.displaced;
+    lost(now);
+}
+
+/// Whoever comes in by the thousand must not fill the log.
+bool Connection::mayNote(Instant now) {
+    if (m_phase == Phase::Live || !m_context.strangerNotes) return true;
+    if (m_context.strangerNotes->take(now)) return true;
+    ++m_context.counters.notesLetGo;
+    return false;
+}
+
 void Connection::loseSeat(Instant now) {
     m_player = 0;  // without vacating it: it has a new holder
     end(ByeReason::Done, "this seat was taken up by another connection", false, now);
@@ -485,6 +574,7 @@ LogLine Connection::line(std::string_view event) const {
     out.with("connection", m_id).with("peer", m_peer);
     if (m_session) out.with("session", m_session->name());
     if (m_player != 0) out.with("player", m_player);
+    if (!m_holder.empty()) out.with("holder", m_holder);
     return out;
 }
 

@@ -26,6 +26,7 @@
 #include "server/limits.h"
 #include "server/log.h"
 #include "server/session.h"
+#include "server/ticket_desk.h"
 #include "server/token_bucket.h"
 
 namespace huestep::server {
@@ -35,13 +36,17 @@ using ConnectionId = std::uint64_t;
 /// What happened since the start, for the log and for tests.
 struct Counters {
     std::uint64_t accepted = 0;
-    std::uint64_t refused = 0;  ///< connections over a limit
+    std::uint64_t refused = 0;    ///< connections over a limit
+    std::uint64_t displaced = 0;  ///< half-open ones that made room for others
     std::uint64_t bytesIn = 0;
     std::uint64_t bytesOut = 0;
     std::uint64_t badMessages = 0;
+    std::uint64_t badTls = 0;
     std::uint64_t tooSlow = 0;
     std::uint64_t tooFast = 0;
     std::uint64_t timeouts = 0;
+    std::uint64_t notesLetGo = 0;   ///< log lines about strangers, over their rate
+    std::uint64_t hashesLetGo = 0;  ///< hash queries answered without hashes: much lay unread
     std::uint64_t resyncs = 0;
     std::uint64_t snapshots = 0;
     std::uint64_t commandsQueued = 0;
@@ -51,7 +56,16 @@ struct Counters {
     std::uint64_t checkpointMismatches = 0;
     std::uint64_t desyncReports = 0;
     std::uint64_t ticksLetGo = 0;
+    std::uint64_t ticketsTaken = 0;
+    std::uint64_t ticketsMissing = 0;
+    std::uint64_t ticketsForged = 0;
+    std::uint64_t ticketsMisplaced = 0;  ///< for another session or role
+    std::uint64_t ticketsExpired = 0;    ///< or not yet valid, or of before this server's start
+    std::uint64_t ticketsUsed = 0;       ///< shown a second time
+    std::uint64_t ticketsTooMany = 0;    ///< no room to remember one more
 };
+
+void count(Counters& counters, TicketDesk::Verdict verdict);
 
 /// What a connection needs of the process around it.
 struct ConnectionContext {
@@ -59,6 +73,8 @@ struct ConnectionContext {
     protocol::Fingerprint fingerprint;
     LogSink log;
     Counters counters;
+    std::optional<TicketDesk> tickets;         ///< none: anyone may enter
+    std::optional<TokenBucket> strangerNotes;  ///< none: whatever they do is logged
     std::function<Session*(const std::string& name)> findSession;
     /// Another connection that holds this seat must let go of it.
     std::function<void(Session& session, PlayerId player, ConnectionId by, Instant now)> takeOver;
@@ -71,10 +87,16 @@ class Connection {
     Connection& operator=(const Connection&) = delete;
 
     [[nodiscard]] ConnectionId id() const { return m_id; }
+    [[nodiscard]] const std::string& peer() const { return m_peer; }
     [[nodiscard]] const Session* session() const { return m_session; }
     [[nodiscard]] PlayerId player() const { return m_player; }
     [[nodiscard]] bool greeted() const { return m_phase != Phase::Greeting; }
     [[nodiscard]] bool live() const { return m_phase == Phase::Live; }
+    /// Whether the transport should go on reading. What comes behind a Bye is read and let go, or
+    /// closing would take the Bye with it; but not without end.
+    [[nodiscard]] bool reads() const {
+        return m_phase != Phase::Ending || m_letGo < m_context.limits.byeBytes;
+    }
 
     /// Takes bytes as they came.
     void receive(std::span<const std::byte> bytes, Instant now);
@@ -91,6 +113,10 @@ class Connection {
     void end(protocol::ByeReason reason, std::string text, bool mayResume, Instant now);
     /// The transport is gone.
     void lost(Instant now);
+    /// What the transport got was not of its kind; it closes.
+    void refusedByTls(const std::string& why, Instant now);
+    /// Ends it without a word, for another that comes: the transport closes at once.
+    void displace(Instant now);
     /// The seat belongs to another connection now.
     void loseSeat(Instant now);
 
@@ -113,6 +139,8 @@ class Connection {
     void on(const protocol::Ping& ping, Instant now);
     void on(const protocol::Bye& bye, Instant now);
 
+    bool admit(const protocol::Hello& hello, Instant now);
+    void takeSeat(Session& session, Instant now);
     void enter(Session& session, PlayerId player, Instant now);
     void startFeed(Instant now);
     /// Null: waits for one at or after `notBefore`.
@@ -128,6 +156,8 @@ class Connection {
     SharedBytes nextOfSnapshot(Instant now);
     SharedBytes nextFrame(Instant now);
     LogLine line(std::string_view event) const;
+    bool mayNote(Instant now);
+    [[nodiscard]] Instant partialBy() const;
 
     ConnectionId m_id;
     std::string m_peer;
@@ -138,6 +168,7 @@ class Connection {
     PlayerId m_player = 0;
     JoinId m_join = 0;
     std::optional<protocol::Hello> m_hello;
+    std::string m_holder;        ///< by its ticket
     bool m_mayHaveTail = false;  ///< its world is surely one of this server's
 
     // Output.
@@ -164,6 +195,8 @@ class Connection {
     Instant m_behindSince = 0;  ///< 0: up to date
     bool m_resynced = false;    ///< since it fell behind
     Instant m_closeBy = ~Instant{0};
+    std::size_t m_letGo = 0;  ///< bytes that came behind the end
+    TokenBucket m_bytes;
     TokenBucket m_messages;
     TokenBucket m_heavy;
     TokenBucket m_notes;

@@ -28,6 +28,12 @@ Result<ResumeKey> randomKey() {
     return key;
 }
 
+/// Without random bytes no session is opened either, so zeros do no harm.
+ResumeKey visitorsKey() {
+    const Result<ResumeKey> key = randomKey();
+    return key ? *key : ResumeKey{};
+}
+
 /// Whether the catalogue has a script for a scene of this name.
 bool isScripted(const std::string& scene) {
     const CatalogEntry* entry = findInCatalog(scene);
@@ -49,14 +55,21 @@ struct ClockedSession {
 };
 
 struct Host::Inside {
-    explicit Inside(HostConfig given)
+    Inside(HostConfig given, std::optional<protocol::TlsContext> itsTls)
         : config(std::move(given)),
+          tls(std::move(itsTls)),
           writer([this] { uv_async_send(&news); }),
           executor(config.threads > 1
                        ? std::make_unique<Executor>(config.threads, 0, nullptr, uv_hrtime)
                        : nullptr),
-          hub({config.limits, config.fingerprint, config.log, {executor.get()}}, writer),
-          sockets(loop, hub) {}
+          hub({config.limits,
+               config.fingerprint,
+               config.log,
+               {executor.get()},
+               std::move(config.tickets),
+               visitorsKey()},
+              writer),
+          sockets(loop, hub, tls ? &*tls : nullptr) {}
     ~Inside();
 
     /// The loop and the handles must be there before the writer's thread, which wakes them.
@@ -65,6 +78,7 @@ struct Host::Inside {
     };
 
     Status start();
+    [[nodiscard]] Status mayListenOn(const protocol::Address& bound) const;
     Status addSession(const SessionSpec& spec, Instant now);
     void closeDueTicks();
     void scheduleTicks();
@@ -76,6 +90,7 @@ struct Host::Inside {
     void initHandles();
 
     HostConfig config;
+    std::optional<protocol::TlsContext> tls;
     Loop loop;
     uv_async_t news{};
     uv_async_t stopper{};
@@ -136,11 +151,6 @@ Host::Inside::~Inside() {
 }
 
 Status Host::Inside::start() {
-    if (!config.open) {
-        return Error{
-            "this server has no tickets to tell players apart yet, so it serves only when told "
-            "that anyone may join: give --open"};
-    }
     Result<protocol::Address> listen = protocol::parseAddress(config.listen, true);
     if (!listen) return listen.error();
     if (config.sessions.empty()) return Error{"there is no session to host"};
@@ -155,9 +165,18 @@ Status Host::Inside::start() {
                                                config.limits.catchUpTicks)});
     }
     if (Status listening = sockets.listen(*listen); !listening) return listening;
+    if (Status may = mayListenOn(sockets.bound()); !may) return may;
     address = protocol::toText(sockets.bound());
     LogLine("listening").with("address", address).with("sessions", sessions.size()).to(config.log);
     return Done{};
+}
+
+Status Host::Inside::mayListenOn(const protocol::Address& bound) const {
+    if (hub.asksForTickets() || config.open || protocol::isLoopback(bound)) return Done{};
+    return Error{protocol::toText(bound) +
+                 " can be reached from other machines, and anyone who does could join: give "
+                 "--tickets with a key file (see huestep ticket --help), or --open if that is "
+                 "meant"};
 }
 
 Status Host::Inside::addSession(const SessionSpec& spec, Instant now) {
@@ -317,9 +336,15 @@ Result<std::unique_ptr<Host>> Host::open(HostConfig config) {
     // A client that is gone is an error of the write to it, not the end of the process.
     std::signal(SIGPIPE, SIG_IGN);
     if (!config.log) config.log = logToStandardError();
+    std::optional<protocol::TlsContext> tls;
+    if (config.tls) {
+        auto made = protocol::TlsContext::forServer(config.tls->certificates, config.tls->key);
+        if (!made) return made.error();
+        tls.emplace(std::move(made).value());
+    }
     std::unique_ptr<Inside> inside;
     try {
-        inside = std::make_unique<Inside>(std::move(config));
+        inside = std::make_unique<Inside>(std::move(config), std::move(tls));
     } catch (const std::runtime_error& failure) {
         return Error{failure.what()};
     }
@@ -329,6 +354,12 @@ Result<std::unique_ptr<Host>> Host::open(HostConfig config) {
 
 const std::string& Host::address() const {
     return m_inside->address;
+}
+Status Host::mayListenOn(const protocol::Address& bound) const {
+    return m_inside->mayListenOn(bound);
+}
+const std::optional<TlsFiles>& Host::tls() const {
+    return m_inside->config.tls;
 }
 uv_loop_s* Host::loop() {
     return &m_inside->loop;

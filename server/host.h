@@ -4,7 +4,7 @@
 ///     config.listen = "127.0.0.1:0";
 ///     config.data = "data";                               // session NAME lives in data/NAME
 ///     config.sessions.push_back({"play", scene});
-///     config.open = true;                                 // --open: print the warning yourself
+///     config.tickets = ...;                               // or config.open: anyone may join
 ///     config.fingerprint = ...;                           // what this build's self-test gave
 ///     Result<std::unique_ptr<Host>> host = Host::open(std::move(config));
 ///     if (!host) -> print host.error().message, exit 2
@@ -20,6 +20,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@
 #include "core/result.h"
 #include "core/scene/scene.h"
 #include "core/scene/script.h"
+#include "protocol/address.h"
 #include "protocol/messages.h"
 #include "server/hub.h"
 #include "server/limits.h"
@@ -44,13 +46,21 @@ struct SessionSpec {
     Script script{};
 };
 
+struct TlsFiles {
+    std::string certificates;  ///< the server's, and those that vouch for it
+    std::string key;           ///< its private key
+};
+
 struct HostConfig {
     std::string listen = "127.0.0.1:7777";  ///< HOST:PORT; port 0: any free one
     std::string data = "huestep-data";      ///< created if missing
     std::vector<SessionSpec> sessions;
-    /// Anyone may join without a ticket. Required: there are no tickets yet, and without it
-    /// `Host::open` refuses with a sentence that says so.
+    /// Whose tickets let players in. None: anyone may join, and then `Host::open` refuses to listen
+    /// where others than this machine's users come from, unless `open` says that this is meant.
+    std::optional<TicketRules> tickets = std::nullopt;
     bool open = false;
+    /// PEM files: with them players' connections and the page speak TLS 1.3.
+    std::optional<TlsFiles> tls = std::nullopt;
     protocol::Fingerprint fingerprint;
     Limits limits;
     int threads = 1;            ///< that step the worlds, shared by all sessions
@@ -80,7 +90,12 @@ class Host {
 
     /// HOST:PORT it listens on, the port as bound.
     [[nodiscard]] const std::string& address() const;
+    /// Whether a door may stand there: not open to others than this machine's users, unless it is
+    /// meant to be. For parts that listen too. The sentence names the address and what to give.
+    [[nodiscard]] Status mayListenOn(const protocol::Address& bound) const;
     [[nodiscard]] uv_loop_s* loop();
+    /// For parts that listen too. None: no TLS.
+    [[nodiscard]] const std::optional<TlsFiles>& tls() const;
     /// Sessions and counters.
     [[nodiscard]] const Hub& hub() const;
     /// For parts through which clients come: as a transport uses it.

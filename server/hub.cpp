@@ -8,10 +8,15 @@
 namespace huestep::server {
 
 Hub::Hub(HubConfig config, JournalSink& journal)
-    : m_resources(config.resources), m_journal(journal) {
+    : m_resources(config.resources),
+      m_journal(journal),
+      m_visitors(config.limits, config.visitorsKey, 0) {
     m_context.limits = config.limits;
     m_context.fingerprint = config.fingerprint;
     m_context.log = std::move(config.log);
+    m_context.strangerNotes.emplace(config.limits.strangerNotesPerSecond,
+                                    config.limits.strangerNoteBurst, 0);
+    if (config.tickets) m_context.tickets.emplace(std::move(*config.tickets), config.limits);
     m_context.findSession = [this](const std::string& name) { return findByName(name); };
     m_context.takeOver = [this](Session& session, PlayerId player, ConnectionId by, Instant now) {
         takeOver(session, player, by, now);
@@ -60,23 +65,64 @@ Session* Hub::findByName(const std::string& name) {
     return open ? found->second.get() : nullptr;
 }
 
+Status Hub::admit(std::span<const std::byte> ticket, const std::string& session,
+                  protocol::Role role) {
+    if (!m_context.tickets) return Done{};
+    const TicketDesk::Answer answer = m_context.tickets->take(ticket, session, role);
+    count(m_context.counters, answer.verdict);
+    if (answer.verdict == TicketDesk::Verdict::Taken) return Done{};
+    return Error{answer.sentence};
+}
+
 std::optional<ConnectionId> Hub::accept(std::string peer, Instant now) {
-    const auto halfOpen = std::count_if(m_connections.begin(), m_connections.end(),
-                                        [](const auto& c) { return !c.second->greeted(); });
+    const std::string visitor = visitorOf(peer);
     if (m_stopping || m_connections.size() >= m_context.limits.connections ||
-        static_cast<std::size_t>(halfOpen) >= m_context.limits.halfOpen) {
+        !m_visitors.mayCome(visitor, now) || !makeRoom(visitor, now)) {
         ++m_context.counters.refused;
         return std::nullopt;
     }
     ++m_context.counters.accepted;
     const ConnectionId id = ++m_lastConnection;
     m_connections.emplace(id, std::make_unique<Connection>(id, std::move(peer), m_context, now));
+    m_halfOpen.emplace(id, visitor);
+    m_visitors.came(visitor);
     return id;
+}
+
+/// Room for one more half-open connection of this visitor: where there is none, the oldest of
+/// whoever has most of them goes, so that a flood cannot keep others out. False: he has too many.
+bool Hub::makeRoom(const std::string& visitor, Instant now) {
+    std::map<std::string, std::uint32_t> shares;
+    for (const auto& [id, whose] : m_halfOpen) ++shares[whose];
+    if (!isShared(visitor) && shares[visitor] >= m_context.limits.halfOpenPerAddress) return false;
+    if (m_halfOpen.size() < m_context.limits.halfOpen) return true;
+    const auto most =
+        std::max_element(shares.begin(), shares.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto oldest = std::find_if(m_halfOpen.begin(), m_halfOpen.end(),
+                                     [&](const auto& each) { return each.second == most->first; });
+    const ConnectionId id = oldest->first;
+    m_halfOpen.erase(oldest);
+    m_connections.at(id)->displace(now);
+    m_displaced.push_back(id);
+    return true;
 }
 
 void Hub::receive(ConnectionId id, std::span<const std::byte> bytes, Instant now) {
     const auto found = m_connections.find(id);
-    if (found != m_connections.end()) found->second->receive(bytes, now);
+    if (found == m_connections.end()) return;
+    found->second->receive(bytes, now);
+    if (found->second->greeted()) m_halfOpen.erase(id);
+}
+
+void Hub::refusedByTls(ConnectionId id, const std::string& why, Instant now) {
+    const auto found = m_connections.find(id);
+    if (found != m_connections.end()) found->second->refusedByTls(why, now);
+}
+
+bool Hub::reads(ConnectionId id) const {
+    const auto found = m_connections.find(id);
+    return found == m_connections.end() || found->second->reads();
 }
 
 SharedBytes Hub::next(ConnectionId id, std::size_t unsent, Instant now) {
@@ -98,6 +144,8 @@ void Hub::closed(ConnectionId id, Instant now) {
     const auto found = m_connections.find(id);
     if (found == m_connections.end()) return;
     found->second->lost(now);
+    m_visitors.left(visitorOf(found->second->peer()));
+    m_halfOpen.erase(id);
     m_connections.erase(found);
 }
 

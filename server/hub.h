@@ -9,10 +9,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/connection.h"
 #include "server/session.h"
+#include "server/visitors.h"
 
 namespace huestep::server {
 
@@ -29,6 +31,8 @@ struct HubConfig {
     protocol::Fingerprint fingerprint;
     LogSink log;
     StepResources resources;
+    std::optional<TicketRules> tickets{};  ///< none: anyone may enter
+    ResumeKey visitorsKey{};               ///< random: see `Visitors`
 };
 
 class Hub {
@@ -45,8 +49,21 @@ class Hub {
     [[nodiscard]] const Counters& counters() const { return m_context.counters; }
     [[nodiscard]] const Limits& limits() const { return m_context.limits; }
 
-    /// None: over a limit; the caller closes the socket without a word.
+    [[nodiscard]] bool asksForTickets() const { return m_context.tickets.has_value(); }
+    /// For those who watch over another way than a connection: whether a ticket lets them in. The
+    /// sentence says why not.
+    Status admit(std::span<const std::byte> ticket, const std::string& session,
+                 protocol::Role role);
+
+    /// None: over a limit; the caller closes the socket without a word. `peer`: HOST:PORT. Others
+    /// may have had to make room: see `displaced`.
     std::optional<ConnectionId> accept(std::string peer, Instant now);
+    /// Connections that the last `accept` ended; told once, for the transport to close at once.
+    std::vector<ConnectionId> displaced() { return std::exchange(m_displaced, {}); }
+    /// Whether to go on reading from it.
+    [[nodiscard]] bool reads(ConnectionId id) const;
+    /// What came over it is not what the transport speaks: it is logged, and the caller closes it.
+    void refusedByTls(ConnectionId id, const std::string& why, Instant now);
     void receive(ConnectionId id, std::span<const std::byte> bytes, Instant now);
     /// See `Connection::next`. Null for an unknown id too.
     SharedBytes next(ConnectionId id, std::size_t unsent, Instant now);
@@ -76,6 +93,7 @@ class Hub {
     void stop(Instant now);
 
  private:
+    bool makeRoom(const std::string& visitor, Instant now);
     Session* findByName(const std::string& name);
     void takeOver(Session& session, PlayerId player, ConnectionId by, Instant now);
 
@@ -85,6 +103,10 @@ class Hub {
     std::map<std::string, std::unique_ptr<Session>> m_sessions;
     std::map<ConnectionId, std::unique_ptr<Connection>> m_connections;
     ConnectionId m_lastConnection = 0;
+    Visitors m_visitors;
+    /// Connections without a finished Hello, and whose they are; the oldest first.
+    std::map<ConnectionId, std::string> m_halfOpen;
+    std::vector<ConnectionId> m_displaced;
     bool m_stopping = false;
 };
 

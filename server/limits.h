@@ -17,8 +17,19 @@ struct Limits {
     // A process.
     std::uint32_t sessions = 256;
     std::uint32_t connections = 1'024;
-    std::uint32_t halfOpen = 64;  ///< connections without a finished Hello
-    int backlog = 128;            ///< connections that the system holds for us to accept
+    std::uint32_t halfOpen = 64;  ///< connections without a finished Hello; one more ends the
+                                  ///< oldest of the address that has most of them
+    // By address (server/visitors.h); of loopback there is one for many users, and these do not
+    // hold.
+    std::uint32_t connectionsPerAddress = 256;
+    std::uint32_t halfOpenPerAddress = 16;
+    double acceptsPerSecond = 20.0;  ///< token bucket of connections
+    double acceptBurst = 128.0;
+    std::size_t rateBuckets = 1'024;       ///< that addresses share by their hash
+    double strangerNotesPerSecond = 20.0;  ///< token bucket of log lines about those who were
+    double strangerNoteBurst = 100.0;      ///< not let in, all together
+    std::uint32_t acceptsAtOnce = 16;      ///< then others have their turn
+    int backlog = 128;                     ///< connections that the system holds for us to accept
     Instant farewellTime = 500 * millisecond;  ///< for clients to read their Bye at a stop
     Instant spareTime = 2 * millisecond;  ///< before a deadline, nothing else is begun any more
 
@@ -26,19 +37,24 @@ struct Limits {
     std::size_t helloBytes = 1'024;     ///< largest payload before Welcome
     std::size_t messageBytes = 16'384;  ///< largest payload after it: an Intent
     std::uint32_t commandsPerIntent = 16;
-    Instant helloTime = 5 * second;     ///< from accept to a finished Hello
-    Instant partialTime = 5 * second;   ///< for the rest of a message begun
-    Instant pingEvery = 2 * second;     ///< of silence
-    Instant silenceTime = 15 * second;  ///< without a byte from the client
-    double messagesPerSecond = 240.0;   ///< token bucket of all messages
+    Instant helloTime = 5 * second;          ///< from accept to a finished Hello
+    Instant partialTime = 3 * second;        ///< for the rest of a message begun, and
+    double partialBytesPerSecond = 1'024.0;  ///< beside it, for the whole message at this pace
+    Instant pingEvery = 2 * second;          ///< of silence
+    Instant silenceTime = 15 * second;       ///< without a byte from the client
+    double messagesPerSecond = 240.0;        ///< token bucket of all messages
     double messageBurst = 1'200.0;
+    double bytesPerSecond = 128.0 * 1024.0;  ///< token bucket of all bytes
+    double byteBurst = 256.0 * 1024.0;
     double heavyPerSecond = 1.0;  ///< token bucket of requests that cost work:
     double heavyBurst = 6.0;      ///< snapshots, hash queries, reports
     double notesPerSecond = 1.0;  ///< token bucket of log lines that a client causes at will
     double noteBurst = 5.0;
+    std::size_t ticketsUsed = 65'536;      ///< remembered until they expire; then none is taken
     std::uint32_t queriesWaiting = 4;      ///< hash queries
     Instant rebuildPatience = 2 * second;  ///< for a rebuilt world, before something else is sent
     Instant byeTime = 2 * second;          ///< for a client to read its Bye
+    std::size_t byeBytes = 256u << 10;     ///< read and let go meanwhile, so that it is not lost
 
     // A slow consumer: what lies in the transport for one client, and how far behind it may be.
     std::size_t lowWater = 64u << 10;      ///< no more is handed out while so much is unsent

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace huestep::server {
 
@@ -68,6 +69,34 @@ Result<Listening> listenOn(uv_loop_t& loop, const protocol::Address& address, in
         if (last) return last;
     }
     return last;
+}
+
+AcceptTurns::AcceptTurns(uv_loop_t& loop, std::uint32_t most, std::function<void()> accept)
+    : m_loop(loop), m_most(most), m_accept(std::move(accept)) {}
+
+void AcceptTurns::start() {
+    m_turn = new uv_prepare_t{};
+    uv_prepare_init(&m_loop, m_turn);  // takes nothing of the system
+    m_turn->data = this;
+    uv_prepare_start(m_turn, [](uv_prepare_t* handle) {
+        auto& self = *static_cast<AcceptTurns*>(handle->data);
+        self.m_accepted = 0;
+        if (std::exchange(self.m_waits, false)) self.connection();
+    });
+    uv_unref(asHandle(m_turn));  // a loop with nothing else to do may end
+}
+
+void AcceptTurns::connection() {
+    m_waits = m_accepted >= m_most;
+    if (m_waits) return;
+    ++m_accepted;
+    m_accept();
+}
+
+void AcceptTurns::close() {
+    if (!m_turn) return;
+    uv_close(asHandle(std::exchange(m_turn, nullptr)),
+             [](uv_handle_t* handle) { delete reinterpret_cast<uv_prepare_t*>(handle); });
 }
 
 void closeAndFree(uv_tcp_t* handle) {

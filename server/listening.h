@@ -3,6 +3,9 @@
 
 #include <uv.h>
 
+#include <cstdint>
+#include <functional>
+
 #include "core/result.h"
 #include "protocol/address.h"
 
@@ -24,6 +27,32 @@ Result<Listening> listenOn(uv_loop_t& loop, const protocol::Address& address, in
 
 /// The memory goes once the loop has closed the handle.
 void closeAndFree(uv_tcp_t* handle);
+
+/// Has a listener accept no more than so many connections in a turn of the loop: libuv itself goes
+/// on for as long as there is somebody, and a flood of them would hold up every tick.
+class AcceptTurns {
+ public:
+    /// `accept` calls uv_accept once.
+    AcceptTurns(uv_loop_t& loop, std::uint32_t most, std::function<void()> accept);
+    ~AcceptTurns() { close(); }
+    AcceptTurns(const AcceptTurns&) = delete;
+    AcceptTurns& operator=(const AcceptTurns&) = delete;
+
+    /// Once the listener is there.
+    void start();
+    /// The listener's word that somebody is there: he is accepted now or in the next turn. As long
+    /// as he is not, libuv asks for no more.
+    void connection();
+    void close();
+
+ private:
+    uv_loop_t& m_loop;
+    std::uint32_t m_most;
+    std::function<void()> m_accept;
+    uv_prepare_t* m_turn = nullptr;  ///< frees itself once closed
+    std::uint32_t m_accepted = 0;    ///< in this turn
+    bool m_waits = false;
+};
 
 template <class Handle>
 uv_handle_t* asHandle(Handle* handle) {

@@ -26,12 +26,17 @@ void Seats::recover(const World& world, Instant now) {
     }
 }
 
-std::optional<JoinId> Seats::join() {
+std::optional<JoinId> Seats::join(std::string holder) {
     const auto coming = std::count_if(m_joins.begin(), m_joins.end(),
                                       [](const auto& join) { return join.second.player == 0; });
     if (m_seats.size() + static_cast<std::size_t>(coming) >= m_limits.seats) return std::nullopt;
-    m_joins.emplace(++m_lastJoin, Join{});
+    m_joins[++m_lastJoin].holder = std::move(holder);
     return m_lastJoin;
+}
+
+bool Seats::joining(const std::string& holder) const {
+    return std::any_of(m_joins.begin(), m_joins.end(),
+                       [&](const auto& join) { return join.second.holder == holder; });
 }
 
 Seats::Outcome Seats::outcome(JoinId join, Instant now) {
@@ -81,6 +86,19 @@ Result<Seats::Resumed> Seats::resume(const protocol::ResumeToken& token, Instant
     seat->second.emptySince = now;
     seat->second.heardAt = m_tick;
     return Resumed{claim->player, thisEpoch};
+}
+
+PlayerId Seats::reclaim(const std::string& holder, Instant now) {
+    const auto seat = std::find_if(m_seats.begin(), m_seats.end(), [&](const auto& each) {
+        return each.second.holder == holder && !each.second.leaving;
+    });
+    if (seat == m_seats.end()) return 0;
+    // The tokens that went out before are somebody's who had the ticket before: none holds now.
+    seat->second.next = std::min<int>(seat->second.issued, lastIssue - 2) + 2;
+    seat->second.connected = true;
+    seat->second.emptySince = now;
+    seat->second.heardAt = m_tick;
+    return seat->first;
 }
 
 protocol::ResumeToken Seats::issue(PlayerId player) {
@@ -151,8 +169,9 @@ void Seats::applied(const World& world, std::uint64_t tick) {
         join.player = arrived[place++];
         join.committedAt = tick + 1;
         Seat seat;
+        seat.holder = join.holder;
         seat.heardAt = tick;
-        m_seats.emplace(join.player, seat);
+        m_seats.emplace(join.player, std::move(seat));
     }
 }
 

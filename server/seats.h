@@ -27,8 +27,10 @@ class Seats {
     /// Seats of a world that was recovered: all empty, kept as if they had just become so.
     void recover(const World& world, Instant now);
 
-    /// None: every seat is taken or asked for.
-    std::optional<JoinId> join();
+    /// None: every seat is taken or asked for. `holder`: who it is for, where tickets say so.
+    std::optional<JoinId> join(std::string holder = {});
+    /// Whether a seat for this holder is asked for and not yet handed over.
+    [[nodiscard]] bool joining(const std::string& holder) const;
     struct Outcome {
         enum class Kind : std::uint8_t { Pending, Seated, Refused } kind = Kind::Pending;
         PlayerId player = 0;
@@ -50,6 +52,9 @@ class Seats {
         bool sameEpoch = false;
     };
     Result<Resumed> resume(const protocol::ResumeToken& token, Instant now);
+    /// The seat that a holder got by an earlier ticket, for whoever shows a new one of his; 0: he
+    /// has none. It is known as long as this server runs.
+    PlayerId reclaim(const std::string& holder, Instant now);
     /// The token of a taken seat that goes out now: a fresh one, or after a `resume` by the one
     /// before the newest, the newest again.
     protocol::ResumeToken issue(PlayerId player);
@@ -73,6 +78,7 @@ class Seats {
 
  private:
     struct Seat {
+        std::string holder;  ///< empty: not known
         bool connected = false;
         bool leaving = false;  ///< its RemovePlayer comes next
         Instant emptySince = 0;
@@ -81,6 +87,7 @@ class Seats {
         int next = 1;               ///< the token that goes out next
     };
     struct Join {
+        std::string holder;
         PlayerId player = 0;            ///< once its frame is closed
         std::uint64_t committedAt = 0;  ///< the seat is handed over at this tick
         bool asked = false;             ///< its AddPlayer is in the frame being closed

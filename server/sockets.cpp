@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/codec.h"
 #include "server/listening.h"
 
 namespace huestep::server {
@@ -12,6 +13,7 @@ struct Sockets::Socket {
     uv_tcp_t tcp{};
     Sockets* owner = nullptr;
     ConnectionId id = 0;
+    std::optional<protocol::TlsStream> tls{};
     bool closing = false;
     bool shutDown = false;
     uv_shutdown_t shutdown{};
@@ -24,7 +26,11 @@ struct Sockets::Write {
     std::vector<SharedBytes> bytes;
 };
 
-Sockets::Sockets(uv_loop_t& loop, Hub& hub) : m_loop(loop), m_hub(hub) {}
+Sockets::Sockets(uv_loop_t& loop, Hub& hub, const protocol::TlsContext* tls)
+    : m_loop(loop),
+      m_hub(hub),
+      m_tls(tls),
+      m_turns(loop, hub.limits().acceptsAtOnce, [this] { accept(); }) {}
 
 Sockets::~Sockets() {
     assert(m_sockets.empty());
@@ -40,15 +46,17 @@ Status Sockets::listen(const protocol::Address& address) {
     }
     m_listener = listening->handle;
     m_bound = std::move(listening->bound);
+    m_turns.start();
     return Done{};
 }
 
 void Sockets::stopListening() {
+    m_turns.close();
     if (m_listener) closeAndFree(std::exchange(m_listener, nullptr));
 }
 
 void Sockets::onConnection(uv_stream_t* listener, int status) {
-    if (status == 0) static_cast<Sockets*>(listener->data)->accept();
+    if (status == 0) static_cast<Sockets*>(listener->data)->m_turns.connection();
 }
 
 void Sockets::accept() {
@@ -71,7 +79,12 @@ void Sockets::accept() {
         return;
     }
     socket->id = *id;
+    if (m_tls) socket->tls.emplace(*m_tls);
     start(std::move(socket));
+    for (const ConnectionId displaced : m_hub.displaced()) {
+        const auto found = m_sockets.find(displaced);
+        if (found != m_sockets.end()) close(*found->second);
+    }
 }
 
 void Sockets::start(std::unique_ptr<Socket> socket) {
@@ -92,7 +105,9 @@ void Sockets::onRead(uv_stream_t* stream, ssize_t count, const uv_buf_t* buffer)
     Sockets& owner = *socket.owner;
     if (count < 0) return owner.close(socket);
     const std::span<const char> bytes(buffer->base, static_cast<std::size_t>(count));
-    owner.m_hub.receive(socket.id, std::as_bytes(bytes), uv_hrtime());
+    owner.received(socket, std::as_bytes(bytes));
+    if (socket.closing) return;
+    if (!owner.m_hub.reads(socket.id)) uv_read_stop(stream);
     owner.flush(socket);
 }
 
@@ -109,33 +124,77 @@ void Sockets::flush(const Session& session) {
     }
 }
 
+void Sockets::received(Socket& socket, std::span<const std::byte> bytes) {
+    if (!socket.tls) return m_hub.receive(socket.id, bytes, uv_hrtime());
+    std::vector<std::byte> plain;
+    const Status taken = socket.tls->receive(bytes, plain);
+    if (!plain.empty()) m_hub.receive(socket.id, plain, uv_hrtime());
+    if (taken) return;
+    m_hub.refusedByTls(socket.id, taken.error().message, uv_hrtime());
+    // Its alert goes out as far as it goes at once. Where OpenSSL has nothing to say, the other end
+    // did not begin with TLS, and may be a client that was not told to.
+    std::vector<std::byte> alert = socket.tls->takeOutput();
+    if (alert.empty()) {
+        alert = protocol::encode(protocol::Bye{
+            protocol::ByeReason::BadMessage, "this server speaks TLS: join it with --tls", false});
+    }
+    uv_buf_t buffer =
+        uv_buf_init(reinterpret_cast<char*>(alert.data()), static_cast<unsigned>(alert.size()));
+    uv_try_write(asStream(&socket.tcp), &buffer, 1);
+    close(socket);
+}
+
 void Sockets::flush(Socket& socket) {
     if (socket.closing) return;
     const Instant now = uv_hrtime();
     std::size_t unsent = uv_stream_get_write_queue_size(asStream(&socket.tcp));
-    auto write = std::make_unique<Write>();
-    std::vector<uv_buf_t> buffers;
-    while (SharedBytes bytes = m_hub.next(socket.id, unsent, now)) {
+    std::vector<SharedBytes> out;
+    while (!socket.tls || socket.tls->established()) {
+        SharedBytes bytes = m_hub.next(socket.id, unsent, now);
+        if (!bytes) break;
         unsent += bytes->size();
-        // libuv does not write through the pointer; its buffers are shared with reads.
-        auto* data = const_cast<char*>(reinterpret_cast<const char*>(bytes->data()));
-        buffers.push_back(uv_buf_init(data, static_cast<unsigned>(bytes->size())));
-        write->bytes.push_back(std::move(bytes));
+        if (socket.tls) {
+            socket.tls->send(*bytes);
+        } else {
+            out.push_back(std::move(bytes));
+        }
     }
-    if (!buffers.empty()) {
-        write->socket = &socket;
-        write->request.data = write.get();
-        const int status = uv_write(&write->request, asStream(&socket.tcp), buffers.data(),
-                                    static_cast<unsigned>(buffers.size()), onWritten);
-        if (status != 0) return close(socket);
-        static_cast<void>(write.release());  // `onWritten` takes it back
-        unsent = uv_stream_get_write_queue_size(asStream(&socket.tcp));
+    if (socket.tls) {
+        auto sealed = std::make_shared<const std::vector<std::byte>>(socket.tls->takeOutput());
+        if (!sealed->empty()) out.push_back(std::move(sealed));
     }
+    if (!out.empty()) write(socket, std::move(out));
+    if (socket.closing) return;
     if (m_hub.overdue(socket.id, now)) return close(socket);
-    if (!m_hub.finished(socket.id) || socket.shutDown) return;
-    // Half closed only: closing at once could drop the Bye with whatever the client still sends.
+    if (m_hub.finished(socket.id) && !socket.shutDown) sayTheEnd(socket);
+}
+
+void Sockets::write(Socket& socket, std::vector<SharedBytes> bytes) {
+    auto write = std::make_unique<Write>();
+    write->socket = &socket;
+    write->request.data = write.get();
+    write->bytes = std::move(bytes);
+    std::vector<uv_buf_t> buffers;
+    for (const SharedBytes& each : write->bytes) {
+        // libuv does not write through the pointer; its buffers are shared with reads.
+        auto* data = const_cast<char*>(reinterpret_cast<const char*>(each->data()));
+        buffers.push_back(uv_buf_init(data, static_cast<unsigned>(each->size())));
+    }
+    const int status = uv_write(&write->request, asStream(&socket.tcp), buffers.data(),
+                                static_cast<unsigned>(buffers.size()), onWritten);
+    if (status != 0) return close(socket);
+    static_cast<void>(write.release());  // `onWritten` takes it back
+}
+
+/// Half closed only: closing at once could drop the Bye with whatever the client still sends.
+void Sockets::sayTheEnd(Socket& socket) {
     socket.shutDown = true;
-    uv_shutdown(&socket.shutdown, asStream(&socket.tcp), nullptr);
+    if (socket.tls) {
+        socket.tls->close();
+        auto last = std::make_shared<const std::vector<std::byte>>(socket.tls->takeOutput());
+        if (!last->empty()) write(socket, {std::move(last)});
+    }
+    if (!socket.closing) uv_shutdown(&socket.shutdown, asStream(&socket.tcp), nullptr);
 }
 
 void Sockets::onWritten(uv_write_t* request, int status) {

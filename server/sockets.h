@@ -6,17 +6,22 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "protocol/address.h"
+#include "protocol/tls.h"
 #include "server/hub.h"
+#include "server/listening.h"
 
 namespace huestep::server {
 
 class Sockets {
  public:
-    Sockets(uv_loop_t& loop, Hub& hub);
+    /// `tls`: what is spoken below the protocol; null: nothing. Outlives this.
+    Sockets(uv_loop_t& loop, Hub& hub, const protocol::TlsContext* tls = nullptr);
     ~Sockets();
     Sockets(const Sockets&) = delete;
     Sockets& operator=(const Sockets&) = delete;
@@ -45,16 +50,22 @@ class Sockets {
 
     void accept();
     void start(std::unique_ptr<Socket> socket);
+    void received(Socket& socket, std::span<const std::byte> bytes);
     void flush(Socket& socket);
+    void write(Socket& socket, std::vector<SharedBytes> bytes);
+    void sayTheEnd(Socket& socket);
     void close(Socket& socket);
 
     uv_loop_t& m_loop;
     Hub& m_hub;
+    const protocol::TlsContext* m_tls;
     uv_tcp_t* m_listener = nullptr;  ///< frees itself once closed
+    AcceptTurns m_turns;
     protocol::Address m_bound;
     std::map<ConnectionId, Socket*> m_sockets;  ///< open ones; each frees itself once closed
-    /// One buffer for all reads: libuv hands it back before it asks again.
-    std::array<char, 65536> m_input{};
+    /// One buffer for all reads: libuv hands it back before it asks again. Small, as libuv fills it
+    /// up to 32 times for one socket before another has its turn.
+    std::array<char, 8192> m_input{};
 };
 
 }  // namespace huestep::server

@@ -12,13 +12,13 @@ class TokenBucket {
     TokenBucket(double perSecond, double burst, Instant now)
         : m_perSecond(perSecond), m_burst(burst), m_tokens(burst), m_filled(now) {}
 
-    /// Takes one token; false: there is none.
-    bool take(Instant now) {
+    /// Takes so many tokens; false, and none taken: there are not as many.
+    bool take(Instant now, double count = 1.0) {
         const double passed = now > m_filled ? static_cast<double>(now - m_filled) * 1e-9 : 0.0;
         m_tokens = std::min(m_burst, m_tokens + passed * m_perSecond);
         m_filled = std::max(m_filled, now);
-        if (m_tokens < 1.0) return false;
-        m_tokens -= 1.0;
+        if (m_tokens < count) return false;
+        m_tokens -= count;
         return true;
     }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "protocol/codec.h"
+#include "protocol/keys.h"
 #include "server/token_bucket.h"
 #include "server/web_listener.h"
 #include "server/web_peer.h"
@@ -69,6 +70,15 @@ std::optional<std::string> sessionOf(lws* wsi) {
     return std::string(value);
 }
 
+/// The sealed ticket in the query of who watches; empty: none.
+std::vector<std::byte> ticketOf(lws* wsi) {
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_URI_ARGS) == 0) return {};
+    std::array<char, 4096> text{};
+    const char* value = lws_get_urlarg_by_name(wsi, "ticket=", text.data(), sizeof text);
+    return value ? protocol::fromUrlText(value).value_or(std::vector<std::byte>(1))
+                 : std::vector<std::byte>();
+}
+
 std::string methodOf(lws* wsi) {
     if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0) return "GET";
     if (lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0) return "HEAD";
@@ -80,8 +90,8 @@ std::string methodOf(lws* wsi) {
 struct WebEndpoint::Inside {
     /// A connection: first of HTTP, then maybe a viewer's.
     struct Peer {
-        std::string address;
-        std::string body;  ///< of the reply being sent
+        std::string address;  ///< HOST:PORT
+        std::string body;     ///< of the reply being sent
         std::size_t sent = 0;
         const Session* session = nullptr;  ///< set: admitted as a viewer of it
         std::optional<WebViewer> viewer;
@@ -98,7 +108,7 @@ struct WebEndpoint::Inside {
     int event(lws* wsi, lws_callback_reasons reason, std::string_view in);
     int request(lws* wsi, Peer& peer, std::string_view path);
     int reply(lws* wsi, Peer& peer, const WebReply& reply, bool bodyToo);
-    static bool writeHead(lws* wsi, const WebReply& reply);
+    bool writeHead(lws* wsi, const WebReply& reply) const;
     int writeBody(lws* wsi, Peer& peer);
     int confirmUpgrade(lws* wsi, Peer& peer);
     unsigned refuseViewer(lws* wsi, const Peer& peer) const;
@@ -145,6 +155,7 @@ WebEndpoint::Inside::Inside(Host& itsHost, WebConfig given)
     : host(itsHost),
       config(std::move(given)),
       listener(*host.loop(), config.limits.backlog, config.limits.sendBufferBytes,
+               host.hub().limits().acceptsAtOnce,
                [this](int descriptor, const std::string& peer) { adopt(descriptor, peer); }),
       rates(config.limits.rateBuckets,
             TokenBucket(config.limits.requestsPerSecond, config.limits.requestBurst, uv_hrtime())) {
@@ -161,6 +172,10 @@ Status WebEndpoint::Inside::start() {
     if (!wanted) return wanted.error();
     if (Status listening = listener.listen(*wanted); !listening) return listening;
     address = protocol::toText(listener.bound());
+    if (Status may = host.mayListenOn(listener.bound()); !may) {
+        listener.close();
+        return may;
+    }
     if (Status made = makeContext(); !made) {
         listener.close();
         return made;
@@ -215,6 +230,12 @@ Status WebEndpoint::Inside::makeContext() {
     info.timeout_secs_ah_idle = config.limits.idleSeconds;
     info.keepalive_timeout = config.limits.idleSeconds;
     info.retry_and_idle_policy = &liveness;
+    if (const std::optional<TlsFiles>& tls = host.tls()) {
+        info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+        info.ssl_cert_filepath = tls->certificates.c_str();
+        info.ssl_private_key_filepath = tls->key.c_str();
+        info.ssl_options_set = SSL_OP_NO_TLSv1 | SSL_OP_NO_TLSv1_1 | SSL_OP_NO_TLSv1_2;
+    }
     context = lws_create_context(&info);
     if (!context) {
         return Error{
@@ -264,7 +285,7 @@ int WebEndpoint::Inside::event(lws* wsi, lws_callback_reasons reason, std::strin
 
 bool WebEndpoint::Inside::takeToken(const Peer& peer) {
     ++counters.requests;
-    const std::size_t bucket = std::hash<std::string>{}(peer.address) % rates.size();
+    const std::size_t bucket = std::hash<std::string>{}(visitorOf(peer.address)) % rates.size();
     if (rates[bucket].take(uv_hrtime())) return true;
     ++counters.tooManyRequests;
     return false;
@@ -285,7 +306,7 @@ int WebEndpoint::Inside::request(lws* wsi, Peer& peer, std::string_view path) {
     return reply(wsi, peer, answer(asked, sessionList()), asked.method != "HEAD");
 }
 
-bool WebEndpoint::Inside::writeHead(lws* wsi, const WebReply& reply) {
+bool WebEndpoint::Inside::writeHead(lws* wsi, const WebReply& reply) const {
     std::array<unsigned char, LWS_PRE + headRoom> buffer{};
     unsigned char* const start = buffer.data() + LWS_PRE;
     unsigned char* const end = buffer.data() + buffer.size();
@@ -304,6 +325,8 @@ bool WebEndpoint::Inside::writeHead(lws* wsi, const WebReply& reply) {
     }
     if (!reply.location.empty() && !add("location:", reply.location)) return false;
     if (!reply.encoding.empty() && !add("content-encoding:", reply.encoding)) return false;
+    // A WebSocket that is refused does not tell a page why; this does.
+    if (host.hub().asksForTickets() && !add("x-huestep-tickets:", "asked")) return false;
     if (reply.status == 429 && !add("retry-after:", "1")) return false;
     return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
 }
@@ -354,7 +377,12 @@ unsigned WebEndpoint::Inside::refuseViewer(lws* wsi, const Peer& peer) const {
 }
 
 int WebEndpoint::Inside::confirmUpgrade(lws* wsi, Peer& peer) {
-    const unsigned status = takeToken(peer) ? refuseViewer(wsi, peer) : 429;
+    unsigned status = takeToken(peer) ? refuseViewer(wsi, peer) : 429;
+    const bool watches = header(wsi, WSI_TOKEN_GET_URI) == viewPath;
+    if (status == 0 && watches && !peer.session &&
+        !host.hub().admit(ticketOf(wsi), *sessionOf(wsi), protocol::Role::Spectator)) {
+        status = 401;
+    }
     if (status == 0) {
         peer.steps = header(wsi, WSI_TOKEN_GET_URI) == peerPath;
         if (!peer.steps) peer.session = host.hub().find(*sessionOf(wsi));

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 
 #include <cassert>
-#include <cstring>
 #include <utility>
 
 #include "server/listening.h"
@@ -16,31 +15,25 @@ std::string peerOf(uv_tcp_t* tcp) {
     sockaddr_storage storage{};
     int length = sizeof storage;
     uv_tcp_getpeername(tcp, reinterpret_cast<sockaddr*>(&storage), &length);
-    return visitorOf(storage);
+    return protocol::toText(addressOf(storage));
 }
 
 }  // namespace
 
-std::string visitorOf(sockaddr_storage storage) {
-    if (storage.ss_family == AF_INET6) {
-        in6_addr& number = reinterpret_cast<sockaddr_in6*>(&storage)->sin6_addr;
-        // An IPv4 number as a listener of both families sees it: its /64 is everybody's.
-        if (!IN6_IS_ADDR_V4MAPPED(&number)) std::memset(number.s6_addr + 8, 0, 8);
-    }
-    return addressOf(storage).host;
-}
-
-WebListener::WebListener(uv_loop_t& loop, int backlog, int sendBufferBytes, Take take)
+WebListener::WebListener(uv_loop_t& loop, int backlog, int sendBufferBytes,
+                         std::uint32_t acceptsAtOnce, Take take)
     : m_loop(loop),
       m_backlog(backlog),
       m_sendBufferBytes(sendBufferBytes),
-      m_take(std::move(take)) {}
+      m_take(std::move(take)),
+      m_turns(loop, acceptsAtOnce, [this] { accept(); }) {}
 
 WebListener::~WebListener() {
     close();
 }
 
 void WebListener::close() {
+    m_turns.close();
     if (m_handle) closeAndFree(std::exchange(m_handle, nullptr));
 }
 
@@ -52,11 +45,12 @@ Status WebListener::listen(const protocol::Address& address) {
     }
     m_handle = listening->handle;
     m_bound = std::move(listening->bound);
+    m_turns.start();
     return Done{};
 }
 
 void WebListener::onConnection(uv_stream_t* listener, int status) {
-    if (status == 0) static_cast<WebListener*>(listener->data)->accept();
+    if (status == 0) static_cast<WebListener*>(listener->data)->m_turns.connection();
 }
 
 /// libuv does not give a descriptor away, so the taker gets a second one of the same socket.

@@ -12,19 +12,17 @@
 
 #include "core/result.h"
 #include "protocol/address.h"
+#include "server/listening.h"
 
 namespace huestep::server {
 
-/// Who is to be held to one visitor's rate: an IPv4 number, or the /64 of an IPv6 number, since
-/// whoever has one has them all.
-std::string visitorOf(sockaddr_storage peer);
-
 class WebListener {
  public:
-    /// Takes over a connected, non-blocking socket; `peer` is `visitorOf` its other end.
+    /// Takes over a connected, non-blocking socket; `peer` is HOST:PORT of its other end.
     using Take = std::function<void(int descriptor, const std::string& peer)>;
 
-    WebListener(uv_loop_t& loop, int backlog, int sendBufferBytes, Take take);
+    WebListener(uv_loop_t& loop, int backlog, int sendBufferBytes, std::uint32_t acceptsAtOnce,
+                Take take);
     ~WebListener();
     WebListener(const WebListener&) = delete;
     WebListener& operator=(const WebListener&) = delete;
@@ -44,6 +42,7 @@ class WebListener {
     int m_sendBufferBytes;
     Take m_take;
     uv_tcp_t* m_handle = nullptr;  ///< frees itself once closed
+    AcceptTurns m_turns;
     protocol::Address m_bound;
 };
 

@@ -21,6 +21,10 @@ std::uint64_t nanoseconds() {
         std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
 }
 
+std::uint64_t wallMilliseconds() {
+    return read(CLOCK_REALTIME) / 1'000'000u;
+}
+
 std::uint64_t threadProcessorNanoseconds() {
     return read(CLOCK_THREAD_CPUTIME_ID);
 }

@@ -12,6 +12,7 @@
 #include "tools/command.h"
 #include "tools/interrupt.h"
 #include "tools/text.h"
+#include "tools/ticket_text.h"
 #include "tools/whole_number.h"
 
 namespace huestep::tools {
@@ -27,6 +28,9 @@ struct Options {
     std::string guess = "none";
     std::uint32_t lagMs = 0;
     std::uint32_t jitterMs = 0;
+    std::string ticket;
+    bool tls = false;
+    std::string authorities;
     bool json = false;
 };
 
@@ -63,6 +67,16 @@ client::LagRules lagOf(const Options& options) {
     constexpr client::Instant millisecond = 1'000'000;
     // Half on either way.
     return {options.lagMs * millisecond / 2, options.jitterMs * millisecond / 2, 1};
+}
+
+/// Null: none is spoken.
+Result<std::shared_ptr<const protocol::TlsContext>> tlsOf(const Options& options) {
+    if (!options.tls && !options.authorities.empty()) return Error{"--tls-ca is for --tls alone"};
+    if (!options.tls) return std::shared_ptr<const protocol::TlsContext>();
+    auto context = protocol::TlsContext::forClient(options.authorities);
+    if (!context) return Error{"--tls-ca: " + context.error().message};
+    return std::shared_ptr<const protocol::TlsContext>(
+        std::make_shared<protocol::TlsContext>(std::move(context).value()));
 }
 
 double perSecond(std::uint64_t amount, double seconds) {
@@ -181,6 +195,10 @@ Answer join(const Options& options) {
     if (!rules) return rules.error();
     Result<std::unique_ptr<client::Bot>> bot = makeBot(options.bot);
     if (!bot) return bot.error();
+    Result<std::vector<std::byte>> ticket = readTicket(options.ticket);
+    if (!ticket) return Error{"--ticket: " + ticket.error().message};
+    auto tls = tlsOf(options);
+    if (!tls) return tls.error();
     const Result<protocol::Fingerprint> fingerprint = protocol::selfTest();
     if (!fingerprint) return fingerprint.error();
 
@@ -189,6 +207,8 @@ Answer join(const Options& options) {
     config.address = options.address;
     config.session = options.session;
     config.fingerprint = *fingerprint;
+    config.ticket = std::move(*ticket);
+    config.tls = std::move(*tls);
     config.bot = std::move(bot).value();
     config.ticks = options.ticks;
     config.prediction = std::move(*rules);
@@ -241,6 +261,11 @@ void addJoin(Menu& menu) {
         ->transform(wholeNumber(0, 10'000));
     sub->add_option("--jitter", o->jitterMs, "And by up to so many ms more, as it comes")
         ->transform(wholeNumber(0, 10'000));
+    sub->add_flag("--tls", o->tls, "Speak TLS 1.3; the server's certificate must bear HOST");
+    sub->add_option("--tls-ca", o->authorities,
+                    "With --tls: PEM file of the certificates to trust (default: the system's)");
+    sub->add_option("--ticket", o->ticket,
+                    "File with a ticket, where the server asks for one; -: standard input");
     sub->add_flag("--json", o->json, "Print one JSON document");
 }
 

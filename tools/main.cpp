@@ -56,6 +56,8 @@ int runProgram(int count, char** words) {
     addVerify(menu);
     addServe(menu);
     addJoin(menu);
+    addTicket(menu);
+    addKey(menu);
     addReplay(menu);
     addDiff(menu);
     addBench(menu);

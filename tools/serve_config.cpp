@@ -55,6 +55,9 @@ Status takeKey(const std::string& file, const std::string& key, const toml::node
                ServeOptions& options) {
     if (key == "listen") return takeText(file, node, key, options.listen);
     if (key == "web") return takeText(file, node, key, options.web);
+    if (key == "tickets") return takeText(file, node, key, options.tickets);
+    if (key == "tls-cert") return takeText(file, node, key, options.tlsCertificates);
+    if (key == "tls-key") return takeText(file, node, key, options.tlsKey);
     if (key == "data") return takeText(file, node, key, options.data);
     if (key == "input-delay") return takeDelay(file, node, options.inputDelay);
     if (key == "session") return takeSessions(file, node, options.sessions);
@@ -65,7 +68,8 @@ Status takeKey(const std::string& file, const std::string& key, const toml::node
         return Done{};
     }
     return Error{placeOf(file, node) + "there is no key '" + key +
-                 "'; there are listen, web, data, session, input-delay and open"};
+                 "'; there are listen, web, data, session, input-delay, tickets, tls-cert, "
+                 "tls-key and open"};
 }
 
 constexpr std::uint32_t mostDelay = 60;     // a second at 60 ticks a second

@@ -18,6 +18,9 @@ struct ServeOptions {
     /// Ticks between an input and its frame: `N`, `LOW-HIGH`, or `adaptive`; empty: 0.
     std::string inputDelay;
     bool open = false;
+    std::string tickets;  ///< key file of a host
+    std::string tlsCertificates;
+    std::string tlsKey;
 };
 
 struct InputDelay {
@@ -28,8 +31,9 @@ struct InputDelay {
 Result<InputDelay> parseInputDelay(const std::string& text);
 
 /// Fills what the command line left empty from the TOML file `options.config`, whose keys are the
-/// options' names: `listen`, `web`, `data`, `session` (a list), `input-delay` and `open`. The
-/// sentence of a failure names file and line, or the unknown key.
+/// options' names: `listen`, `web`, `data`, `session` (a list), `input-delay`, `tickets`,
+/// `tls-cert`, `tls-key` and `open`. The sentence of a failure names file and line, or the unknown
+/// key.
 Status fillFromFile(ServeOptions& options);
 
 }  // namespace huestep::tools

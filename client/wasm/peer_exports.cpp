@@ -81,6 +81,11 @@ HUESTEP_EXPORT(peerDelete)(Peer* peer)->void {
     delete peer;
 }
 
+/// The ticket to show at the door, sealed; before the first connection.
+HUESTEP_EXPORT(peerTicket)(Peer* peer, const Bytes* ticket)->void {
+    peer->replica.showTicket(*ticket);
+}
+
 /// A connection is up; times are in ms since some fixed moment.
 HUESTEP_EXPORT(peerConnected)(Peer* peer, double now)->void {
     peer->splitter = protocol::FrameSplitter();

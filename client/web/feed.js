@@ -29,12 +29,14 @@ export class Feed {
    * @param {(frame: ArrayBuffer) => void} onFrame
    * @param {(state: FeedState, sentence: string) => void} onState the sentence is for people
    * @param {import('./peer.js').Peer | null} peer takes part instead of watching
+   * @param {string} ticket of who watches, where the server asks for one; a peer has its own
    */
-  constructor(session, onFrame, onState, peer = null) {
+  constructor(session, onFrame, onState, peer = null, ticket = '') {
     this.session = session;
     this.onFrame = onFrame;
     this.onState = onState;
     this.peer = peer;
+    this.ticket = ticket;
     this.waitMs = firstWaitMs;
     /** How often the connection was lost or refused. */
     this.losses = 0;
@@ -54,6 +56,7 @@ export class Feed {
     this.onState('connecting', 'connecting');
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const query = new URLSearchParams({ session: this.session });
+    if (this.ticket && !this.peer) query.set('ticket', this.ticket);
     const door = this.peer ? 'peer' : 'view';
     const socket = new WebSocket(`${scheme}//${location.host}/${door}?${query}`, `huestep-${door}`);
     socket.binaryType = 'arraybuffer';
@@ -121,6 +124,8 @@ export class Feed {
       const reply = await fetch(location.href, { method: 'HEAD', signal });
       if (reply.status === 404) return 'the server has no such session';
       if (reply.status === 429) return 'the server asks to wait';
+      if (reply.headers.has('x-huestep-tickets') && !this.peer)
+        return 'the server lets in who has a ticket that is not used up';
       return 'the server takes no more viewers';
     } catch {
       return 'the server does not answer';

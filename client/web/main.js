@@ -24,6 +24,11 @@ const session = query.get('session') ?? '';
 const asked = query.get('as');
 /** How this page takes part: by watching, unless its address says otherwise. */
 const role = asked === 'spectator' || asked === 'player' ? asked : null;
+/**
+ * From the part of the address that is not sent to anyone; it goes once, and out of sight.
+ */
+const ticket = new URLSearchParams(location.hash.slice(1)).get('ticket') ?? '';
+if (ticket) history.replaceState(null, '', location.pathname + location.search);
 const surface = /** @type {HTMLCanvasElement} */ (byId('canvas'));
 const shown = {
   tick: byId('tick'),
@@ -362,7 +367,7 @@ async function makePeer(as) {
       onlyWatch(sentence);
       feed?.reject('the core of this page stopped');
     },
-  });
+  }, ticket);
 }
 
 /** @param {string} sentence why */
@@ -386,6 +391,6 @@ async function start() {
     }
   }
   // Starts by itself, and tells its state before it is here.
-  feed = new Feed(session, take, showState, peer);
+  feed = new Feed(session, take, showState, peer, ticket);
 }
 start();

@@ -43,6 +43,19 @@ const names = /** @type {const} */ ([
  * @property {number} waiting messages not handled yet
  */
 
+/**
+ * Of base64url. What is no ticket is shown as it is: the server says what is wrong with it.
+ * @param {string} ticket
+ */
+function bytesOfTicket(ticket) {
+  try {
+    const text = atob(ticket.replaceAll('-', '+').replaceAll('_', '/'));
+    return Uint8Array.from(text.slice(0, 256), (letter) => letter.charCodeAt(0));
+  } catch {
+    return new TextEncoder().encode(ticket).slice(0, 256);
+  }
+}
+
 export class Peer {
   /**
    * @param {import('./core.js').Core} core
@@ -54,13 +67,15 @@ export class Peer {
    * @param {(difference: string) => void} tell.differed body, field and both values
    * @param {(sentence: string) => void} tell.failed the connection must end
    * @param {(sentence: string) => void} tell.stopped so has the core
+   * @param {string} ticket as `huestep ticket issue` prints it; empty: none
    */
-  constructor(core, session, role, tell) {
+  constructor(core, session, role, tell, ticket = '') {
     this.core = core;
     this.tell = tell;
     const spectator = role === 'spectator' ? 1 : 0;
     this.peer = core.call('peerNew', core.putText(session), spectator, core.why);
     if (!this.peer) throw new CoreError(core.sentence());
+    if (ticket) core.call('peerTicket', this.peer, core.put(bytesOfTicket(ticket)));
     /** @type {WebSocket | null} */
     this.socket = null;
     this.busy = false;

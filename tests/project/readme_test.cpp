@@ -74,7 +74,8 @@ TEST_P(Document, NamesOnlyCommandsAndOptionsThatExist) {
     EXPECT_GT(commands, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Project, Document, testing::Values("README.md", "CONTRIBUTING.md"));
+INSTANTIATE_TEST_SUITE_P(Project, Document,
+                         testing::Values("README.md", "CONTRIBUTING.md", "docs/tickets.md"));
 
 TEST(Readme, EverySceneItsCommandsNameIsBuiltIn) {
     const Ended scenes = huestep({"scenes"});

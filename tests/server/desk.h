@@ -38,11 +38,13 @@ struct DeskJournal : JournalSink {
 
 class Desk {
  public:
-    explicit Desk(Limits limits = {}, const Scene& scene = deskScene())
+    explicit Desk(Limits limits = {}, const Scene& scene = deskScene(),
+                  std::optional<TicketRules> tickets = std::nullopt)
         : hub({limits,
                deskPrint,
                [this](Severity, const std::string& line) { log.push_back(line); },
-               {}},
+               {},
+               std::move(tickets)},
               journal) {
         Result<Session*> added = hub.add(startOf(scene), now);
         EXPECT_TRUE(added.ok());
@@ -80,7 +82,8 @@ class Desk {
 /// One raw client.
 class Peer {
  public:
-    explicit Peer(Desk& desk) : m_desk(desk), m_id(desk.hub.accept("test", desk.now)) {}
+    explicit Peer(Desk& desk, const std::string& from = "test")
+        : m_desk(desk), m_id(desk.hub.accept(from, desk.now)) {}
 
     [[nodiscard]] bool accepted() const { return m_id.has_value(); }
     [[nodiscard]] ConnectionId id() const { return *m_id; }

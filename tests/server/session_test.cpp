@@ -523,14 +523,20 @@ TEST(Hub, ConnectionsAndHalfOpenOnesAreBounded) {
     limits.halfOpen = 2;
     Desk desk(limits);
     Peer a(desk), b(desk);
-    EXPECT_FALSE(Peer(desk).accepted()) << "two have not said hello";
-    a.watch();
+    Peer c(desk);
+    EXPECT_TRUE(c.accepted());
+    EXPECT_EQ(desk.hub.displaced(), std::vector<ConnectionId>{a.id()})
+        << "two have not said hello: the older makes room";
+    EXPECT_TRUE(desk.hub.overdue(a.id(), desk.now)) << "and is to be closed";
+    desk.hub.closed(a.id(), desk.now);
     b.watch();
-    Peer c(desk), d(desk);
     c.watch();
+    Peer d(desk), e(desk);
     d.watch();
+    e.watch();
     EXPECT_FALSE(Peer(desk).accepted()) << "four are here";
-    EXPECT_EQ(desk.hub.counters().refused, 2u);
+    EXPECT_EQ(desk.hub.counters().refused, 1u);
+    EXPECT_EQ(desk.hub.counters().displaced, 1u);
 }
 
 TEST(Hub, SessionsAreBoundedAndTheirNamesChecked) {

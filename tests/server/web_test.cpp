@@ -51,24 +51,6 @@ std::array<std::byte, 4> viewMagic() {
 
 const std::vector<WebSession> two{{"arena", 60, 12, 3}, {"pile", 0, 1, 0}};
 
-std::string visitor(const char* number) {
-    sockaddr_storage storage{};
-    if (uv_ip4_addr(number, 1, reinterpret_cast<sockaddr_in*>(&storage)) != 0) {
-        EXPECT_EQ(uv_ip6_addr(number, 1, reinterpret_cast<sockaddr_in6*>(&storage)), 0) << number;
-    }
-    return visitorOf(storage);
-}
-
-TEST(WebListener, OneVisitorIsAnIpv4NumberOrTheHalfOfAnIpv6Number) {
-    EXPECT_EQ(visitor("192.0.2.7"), "192.0.2.7");
-    EXPECT_EQ(visitor("2001:db8:1:2:3:4:5:6"), "2001:db8:1:2::");
-    EXPECT_EQ(visitor("2001:db8:1:2:9:9:9:9"), visitor("2001:db8:1:2::1"));
-    EXPECT_NE(visitor("2001:db8:1:3::1"), visitor("2001:db8:1:2::1"));
-    // As a listener of both families sees IPv4.
-    EXPECT_EQ(visitor("::ffff:192.0.2.7"), "::ffff:192.0.2.7");
-    EXPECT_NE(visitor("::ffff:192.0.2.7"), visitor("::ffff:192.0.2.8"));
-}
-
 TEST(WebRoute, OneSessionIsChosenByItselfAndSeveralAreListed) {
     const WebReply alone = answer({}, {two.data(), 1});
     EXPECT_EQ(alone.status, 302u);

@@ -273,15 +273,6 @@ TEST(Session, AReplayThatIsStoppedDiffersFromNothing) {
     EXPECT_EQ(document["mismatches"], 0);
 }
 
-TEST(Serve, WithoutOpenItRefusesToStart) {
-    const TemporaryFolder folder;
-    const Ended ended = huestep({"serve", "--listen", "127.0.0.1:0", "--data", folder / "data",
-                                 "--session", "play=sandbox"});
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_NE(ended.err.find("--open"), std::string::npos) << ended.err;
-    EXPECT_EQ(ended.out, "");
-}
-
 TEST(Serve, TakesItsOptionsFromAFileAndWarnsOfAnOpenDoor) {
     const TemporaryFolder folder;
     const std::string config = folder / "serve.toml";
