@@ -96,6 +96,58 @@ void saveJournals(const fs::path& folder) {
     save(folder / "damage", bytesOf("\x01\x02\x04 \x02"));
 }
 
+/// Plain tickets, key files, addresses and texts, good ones and some that are cut short.
+void saveDoor(const fs::path& folder) {
+    const std::string key =
+        "verifying d75a980182b10ab7d54bfed3c964073a0ee172f3daa62325af021a68f707511a\n";
+    save(folder / "keys", bytesOf("huestep key 1\n# a host's\n" + key));
+    save(folder / "keys-twice", bytesOf("huestep key 1\n" + key + key));
+    save(folder / "keys-short", bytesOf("huestep key 1\nsealing 00ff\n"));
+    std::string plain(36, '\0');
+    plain[0] = 1;
+    plain[11] = 1;  // expires 256 ms after it was issued, in 1970
+    plain[34] = 4;
+    plain[35] = 3;
+    save(folder / "ticket", bytesOf(plain + "playann"));
+    save(folder / "ticket-short", bytesOf(plain + "play"));
+    save(folder / "ticket-other-version", bytesOf("\x02" + plain.substr(1) + "playann"));
+    save(folder / "address-4", bytesOf("127.0.0.1:7777"));
+    save(folder / "address-6", bytesOf("[2001:db8::1]:7777"));
+    save(folder / "address-mapped", bytesOf("[::ffff:192.0.2.7]:0"));
+    save(folder / "text", bytesOf("Zm9vYmFy_-"));
+}
+
+/// Lists of moves, see connection_target.cpp: what a client does in turn.
+void saveConnections(const fs::path& folder) {
+    constexpr char come = 0, hello = 4, frame = 8, raw = 12, ticks = 16, read = 20, wait = 24,
+                   ask = 28;
+    const auto moves = [&](const char* name, const std::string& bytes) {
+        save(folder / name, bytesOf(bytes));
+    };
+    const auto framed = [&](const Message& message) {
+        const auto bytes = encode(message);
+        const std::size_t size = bytes.size() - headerBytes;
+        std::string out{frame, static_cast<char>(size / 8), static_cast<char>(typeOf(message))};
+        for (const std::byte b : std::span(bytes).subspan(headerBytes)) out += static_cast<char>(b);
+        return out;
+    };
+    const std::string enter{come, hello, 0, ticks, 4, read, 0};
+    moves("plays",
+          enter + framed(Intent{{{1, 1, Release{}}}, {}}) + std::string{ticks, 9, read, 0});
+    moves("watches", std::string{come, hello, 1, ticks, 4, read, 0, ticks, 30, read, 0});
+    moves("asks",
+          enter + std::string{ask, 2, 3, ticks, 40, read, 0, ask, 0, 1, ticks, 40, read, 0});
+    moves("comes-back", enter + std::string{come, hello, 2, ticks, 4, read, 0});
+    moves("does-not-read",
+          enter + std::string{read, 127, ticks, 63, read, 127, ticks, 63, ticks, 63});
+    moves("says-hello-twice", enter + std::string{hello, 0, ticks, 4});
+    moves("stalls", std::string{come, raw, 3, 0x75, 0x48, 1, wait, 40, wait, 40});
+    moves("is-silent", std::string{come, wait, 100, ticks, 4});
+    moves("four-half-open", std::string{come, come + 1, come + 2, come + 3, ticks, 2});
+    moves("leaves", enter + framed(Bye{ByeReason::Done, "leaves", false}) + std::string{ticks, 3});
+    moves("speaks-as-server", enter + framed(Frame{}));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -104,5 +156,7 @@ int main(int argc, char** argv) {
     saveFrames(folder / "frame");
     saveScenes(folder / "scene_file");
     saveJournals(folder / "journal");
+    saveDoor(folder / "door");
+    saveConnections(folder / "connection");
     return 0;
 }
