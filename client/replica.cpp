@@ -5,6 +5,7 @@
 
 #include "core/state/hash.h"
 #include "protocol/codec.h"
+#include "protocol/fingerprint.h"
 #include "protocol/frame.h"
 
 namespace huestep::client {
@@ -33,6 +34,7 @@ void Replica::connected(Instant) {
     m_bye.reset();
     protocol::Hello hello;
     hello.fingerprint = m_config.fingerprint;
+    hello.rules = protocol::builtInRulesMarks();
     hello.session = m_config.session;
     hello.role = m_config.role;
     hello.resume = m_token;
@@ -298,6 +300,7 @@ Statistics Replica::statistics() const {
     if (m_timeline) {
         out.tick = m_timeline->confirmed();
         out.root = m_timeline->confirmedRoot();
+        out.score = m_timeline->world().score();
     }
     if (m_prediction) out.prediction = m_prediction->figures(m_timeline ? &*m_timeline : nullptr);
     m_commands.describe(out);

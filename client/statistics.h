@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "core/world/command.h"
 #include "protocol/messages.h"
@@ -58,6 +59,7 @@ struct Statistics {
     std::uint64_t bytesOut = 0;
     double latencyMedian = 0.0;  ///< s, from own command to the frame that has it
     double latencyP99 = 0.0;
+    std::string score;  ///< how the game stands by the rules of the world; empty: none
     std::optional<protocol::DesyncReport> lastDesync;
     std::optional<PredictionFigures> prediction;  ///< none: this client does not predict
 };

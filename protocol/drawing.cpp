@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "protocol/codec.h"
+
 namespace huestep::protocol {
 
 namespace {
@@ -74,6 +76,7 @@ View drawingOf(const World& world, bool withShapes, std::size_t most) {
     View view;
     view.tick = world.tick();
     view.root = world.motionRoot();
+    view.score = world.score().substr(0, maxScoreText);
 
     std::vector<BodyId> owned;
     for (const PlayerRecord& player : world.players()) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "core/rules/rules.h"
 #include "core/scene/catalog.h"
 #include "core/state/hash.h"
 #include "core/state/snapshot.h"
@@ -45,6 +46,19 @@ Result<Fingerprint> selfTest() {
     Fingerprint fingerprint = buildFingerprint();
     fingerprint.selfTest = world->fullRoot();
     return fingerprint;
+}
+
+std::uint64_t rulesMark(std::string_view name, std::uint32_t version) {
+    const std::string text = std::string(name) + " " + std::to_string(version);
+    return hash64(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+std::vector<std::uint64_t> builtInRulesMarks() {
+    std::vector<std::uint64_t> marks;
+    for (const Rules* const rules : builtInRules()) {
+        marks.push_back(rulesMark(rules->name(), rules->version()));
+    }
+    return marks;
 }
 
 }  // namespace huestep::protocol

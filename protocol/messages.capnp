@@ -36,6 +36,8 @@ struct Hello {
   haveTick @7 :UInt64;                # with resume: last tick the client holds a world of, or 0
   haveHash @8 :UInt64;                # motion root of that world
   ticket @9 :Data;                    # empty, or a sealed ticket (protocol/ticket.h), <= 256 bytes
+  rules @10 :List(UInt64);            # XXH3-64 of the name, a space and the version of each game's
+                                      # rules that the build has; at most 48
 }
 
 struct Welcome {
@@ -145,6 +147,15 @@ struct Command {
       rotation :group {               # cosine and sine of its angle
         c @35 :Float32;
         s @36 :Float32;
+      }
+    }
+    custom :group {                   # what the rules of the session's game make of it
+      kind @37 :UInt32;               # which of the rules' actions
+      id @38 :UInt32;
+      number @39 :Int32;
+      vector :group {
+        x @40 :Float32;
+        y @41 :Float32;
       }
     }
   }
@@ -261,4 +272,5 @@ struct View {
   shapes @8 :List(Shape);             # at most 262,144
   vertices @9 :List(Float32);         # x, y of the shapes' vertices, in the centre-of-mass frame
   joints @10 :List(Float32);          # x, y, x, y: the two ends of each, m, in the world; <= 131,072
+  score @11 :Text;                    # how the game stands, for people, at most 128 bytes
 }

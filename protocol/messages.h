@@ -44,6 +44,8 @@ struct Hello {
     std::uint64_t haveHash = 0;  ///< motion root after `haveTick`
     /// Sealed, as an issuer gave it (protocol/ticket.h); empty: none.
     std::vector<std::byte> ticket;
+    /// The games that this build can step: see `rulesMark`.
+    std::vector<std::uint64_t> rules;
     friend bool operator==(const Hello&, const Hello&) = default;
 };
 
@@ -212,6 +214,7 @@ struct View {
     std::vector<std::uint8_t> flags;  ///< a body: bit 0 asleep, bits 1–2 type, bit 3 a player's
     std::vector<Contact> contacts;
     std::vector<Joint> joints;
+    std::string score;  ///< how the game stands, in a line for people
     friend bool operator==(const View&, const View&) = default;
 };
 

@@ -155,6 +155,18 @@ struct Players {
   maxForce @4 :Float32 = 1000;        # N a command or a grab
 }
 
+struct Rules {
+  # Which game is played, and with what (core/rules/rules.h).
+  struct Parameter {
+    name @0 :Text;                    # 1 to 32 of [a-zA-Z0-9_-]
+    value @1 :Float32;
+  }
+  name @0 :Text;                      # 1 to 32 of [a-z0-9_-]
+  version @1 :UInt32 = 1;             # of the rules: other versions play other games
+  seed @2 :UInt32;                    # of their dice
+  parameters @3 :List(Parameter);     # at most 64, names rise
+}
+
 struct Scene {
   version @0 :UInt32;                 # of this layout: 1
   name @1 :Text;                      # for people, at most 256 bytes
@@ -185,4 +197,5 @@ struct Scene {
     penetration @19 :Float32;         # m
     joint @20 :Float32;               # m
   }
+  rules @21 :Rules;                   # null: no game's; the world alone
 }

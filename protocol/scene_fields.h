@@ -157,6 +157,20 @@ void visitFields(Visitor& v, std::type_identity<Need>) {
     v.field("joint", &Need::joint);
 }
 
+template <class Visitor>
+void visitFields(Visitor& v, std::type_identity<RulesParameter>) {
+    v.required("name", &RulesParameter::name);
+    v.required("value", &RulesParameter::value);
+}
+
+template <class Visitor>
+void visitFields(Visitor& v, std::type_identity<RulesDef>) {
+    v.required("name", &RulesDef::name);
+    v.field("version", &RulesDef::version);
+    v.field("seed", &RulesDef::seed);
+    v.field("parameters", &RulesDef::parameters);
+}
+
 /// After the version, which every file starts with.
 template <class Visitor>
 void visitFields(Visitor& v, std::type_identity<Scene>) {
@@ -172,6 +186,7 @@ void visitFields(Visitor& v, std::type_identity<Scene>) {
     v.field("counters", &Scene::counters);
     v.field("method", &Scene::method);
     v.field("need", &Scene::need);
+    v.field("rules", &Scene::rules);
 }
 
 }  // namespace huestep::protocol

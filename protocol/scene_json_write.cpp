@@ -16,7 +16,7 @@ template <class T>
 inline constexpr bool onOneLine =
     std::is_same_v<T, Vec2> || std::is_same_v<T, Rotation> || std::is_same_v<T, Material> ||
     std::is_same_v<T, Filter> || std::is_same_v<T, SpringDef> || std::is_same_v<T, LimitDef> ||
-    std::is_same_v<T, MotorDef>;
+    std::is_same_v<T, MotorDef> || std::is_same_v<T, RulesParameter>;
 
 /// Grows one text. Fields with their default values are left out: a person sees what is special.
 class Writer {

@@ -4,7 +4,9 @@
 #include <utility>
 #include <variant>
 
+#include "core/rules/rules.h"
 #include "protocol/codec.h"
+#include "protocol/fingerprint.h"
 #include "protocol/plain_text.h"
 
 namespace huestep::server {
@@ -107,6 +109,22 @@ void Connection::handle(protocol::Message message, Instant now) {
     end(ByeReason::UnexpectedMessage, "this message has no place here now", false, now);
 }
 
+namespace {
+
+/// Why the client's build cannot step the session's game; empty: it can.
+std::string lackedRules(const World& world, const protocol::Hello& hello) {
+    const Rules* const rules = world.rules();
+    if (rules == nullptr) return {};
+    const std::uint64_t mark = protocol::rulesMark(rules->name(), rules->version());
+    if (std::find(hello.rules.begin(), hello.rules.end(), mark) != hello.rules.end()) return {};
+    return "this session is played by the rules " + std::string(rules->name()) + " " +
+           std::to_string(rules->version()) +
+           ", which the client's build does not have: it may only watch, on the page that the "
+           "server shows with --web";
+}
+
+}  // namespace
+
 void Connection::on(const protocol::Hello& hello, Instant now) {
     if (hello.version != protocol::protocolVersion) {
         return end(ByeReason::VersionMismatch,
@@ -128,6 +146,9 @@ void Connection::on(const protocol::Hello& hello, Instant now) {
     const bool plays = hello.role == protocol::Role::Player && session->hasPlayers();
     const bool resumes = plays && hello.resume;  // a token was given to a holder of a ticket
     if (!resumes && !admit(hello, now)) return;
+    if (const std::string lack = lackedRules(session->world(), hello); !lack.empty()) {
+        return end(ByeReason::FingerprintMismatch, lack, false, now);
+    }
     m_session = session;
     m_hello = hello;
     if (!plays) return enter(*session, 0, now);

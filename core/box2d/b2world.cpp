@@ -167,6 +167,7 @@ Result<B2World> Builder::build() {
     m_world = result.world.get();
     m_world->SetAllowSleeping(m_scene.sleep);
     if (m_order.noise) makeNoise();
+    if (m_scene.rules) m_notes.add("rules", "Box2D 2.4 plays by none");
     if (!addAll()) return Error{m_error};
     const std::vector<BodyId> ids = bodyIdsOf(m_scene);
     std::vector<std::size_t> byId(ids.size());

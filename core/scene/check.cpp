@@ -99,6 +99,7 @@ class Checker {
     bool limit(const Place& place, const JointDef& joint);
     bool players(const Place& place, const PlayerDef& players);
     bool need(const Place& place, const Scene& scene);
+    bool rules(const Place& place, const RulesDef& def);
     bool limits(const Scene& scene);
     template <class Def>
     bool ids(const std::vector<Def>& defs, std::string_view list);
@@ -421,7 +422,30 @@ bool Checker::scene(const Scene& scene) {
         if (!joint(place, scene.joints[i], scene.bodies.size())) return false;
     }
     return ids(scene.bodies, "bodies") && ids(scene.joints, "joints") &&
-           (!scene.players || players(root.at("players"), *scene.players));
+           (!scene.players || players(root.at("players"), *scene.players)) &&
+           (!scene.rules || rules(root.at("rules"), *scene.rules));
+}
+
+bool Checker::rules(const Place& place, const RulesDef& def) {
+    if (!isRulesName(def.name)) return fail(place.at("name"), "must be 1 to 32 of a-z, 0-9, _, -");
+    if (def.parameters.size() > caps::maxRulesParameters) {
+        return fail(place.at("parameters"), "are more than " + text(caps::maxRulesParameters));
+    }
+    for (std::size_t i = 0; i < def.parameters.size(); ++i) {
+        const RulesParameter& parameter = def.parameters[i];
+        const Place here = place.at("parameters", static_cast<std::int64_t>(i));
+        const bool letters = std::all_of(parameter.name.begin(), parameter.name.end(), [](char c) {
+            return (c >= 'A' && c <= 'Z') || isRulesName(std::string_view(&c, 1));
+        });
+        if (!letters || parameter.name.empty() || parameter.name.size() > caps::maxRulesName) {
+            return fail(here.at("name"), "must be 1 to 32 of a-z, A-Z, 0-9, _, -");
+        }
+        if (i > 0 && parameter.name <= def.parameters[i - 1].name) {
+            return fail(here.at("name"), "must come after the one before it, letter by letter");
+        }
+        if (!finite(here.at("value"), parameter.value)) return false;
+    }
+    return true;
 }
 
 }  // namespace

@@ -89,6 +89,13 @@ std::vector<ShapeDef> ShapeDef::chain(std::span<const Vec2> points, bool loop) {
     return segments;
 }
 
+bool isRulesName(std::string_view name) {
+    if (name.empty() || name.size() > caps::maxRulesName) return false;
+    return std::all_of(name.begin(), name.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    });
+}
+
 std::vector<BodyId> bodyIdsOf(const Scene& scene) {
     return idsOf(scene.bodies, scene.counters.nextBody);
 }

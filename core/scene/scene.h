@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -229,6 +230,22 @@ struct Need {
     friend bool operator==(const Need&, const Need&) = default;
 };
 
+/// A number that rules are started with, by name.
+struct RulesParameter {
+    std::string name;  ///< 1 to 32 of [a-zA-Z0-9_-]
+    float value = 0.0f;
+    friend bool operator==(const RulesParameter&, const RulesParameter&) = default;
+};
+
+/// Which rules a session is played by (core/rules/rules.h), and what they are started with.
+struct RulesDef {
+    std::string name;                        ///< 1 to 32 of [a-z0-9_-]
+    std::uint32_t version = 1;               ///< of the rules: other versions play other games
+    std::uint32_t seed = 0;                  ///< of their dice
+    std::vector<RulesParameter> parameters;  ///< names that rise; those left out are the rules' own
+    friend bool operator==(const RulesDef&, const RulesDef&) = default;
+};
+
 struct Scene {
     std::string name;                  ///< for people, ≤ 256 bytes; no part of a world's state
     Vec2 gravity{0.0f, -10.0f};        ///< m/s², ±10,000
@@ -244,6 +261,7 @@ struct Scene {
     std::optional<PlayerDef> players;  ///< without it, players may only watch
     WorldLimits limits;
     Counters counters;
+    std::optional<RulesDef> rules;  ///< without them a world has none, and no state for any
     friend bool operator==(const Scene&, const Scene&) = default;
 };
 
@@ -276,12 +294,17 @@ inline constexpr std::uint32_t maxShapes = 2'000'000;
 inline constexpr std::uint32_t maxJoints = 1'000'000;
 inline constexpr std::size_t maxSpawnPoints = 4096;
 inline constexpr std::size_t maxSceneName = 256;  ///< bytes
+inline constexpr std::size_t maxRulesName = 32;   ///< bytes, of parameters' names too
+inline constexpr std::size_t maxRulesParameters = 64;
 }  // namespace caps
 
 /// The ids that bodies and joints get, place by place: those given stand; the others are counted
 /// up in the order of the scene, from the counter or past the largest id given, whatever is more.
 std::vector<BodyId> bodyIdsOf(const Scene& scene);
 std::vector<JointId> jointIdsOf(const Scene& scene);
+
+/// Whether the name is 1 to 32 of [a-z0-9_-].
+bool isRulesName(std::string_view name);
 
 /// Says whether a world can be built from the scene; the sentence names the first thing that is
 /// wrong by its path, as in `bodies[3].shapes[0].vertices[2].x: not a finite number`.

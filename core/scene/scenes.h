@@ -74,6 +74,10 @@ Scene mixed(Values values);
 Scene sandbox(Values values);
 Scene terrain(Values values);
 
+// By the rules of a game (core/games).
+Scene ball(Values values);
+Scene building(Values values);
+
 /// An empty scene in which nothing sleeps, so that what rests does so by itself.
 Scene awake();
 

@@ -196,13 +196,26 @@ T get(std::span<const std::byte> bytes, std::size_t at) {
     return value;
 }
 
-std::uint32_t arrayCount(const WorldState& state) {
+/// The arrays that a delta of this version goes over, of one state or two.
+template <class Visit, class... States>
+void forEachArrayIn(std::uint32_t version, Visit&& visit, States&... states) {
+    forEachArrayOf(
+        [&](std::string_view name, auto& first, auto&... others) {
+            using Record = std::remove_cvref_t<decltype(first[0])>;
+            if (!isOfRules<Record> || version == rulesDeltaVersion) visit(name, first, others...);
+        },
+        states...);
+}
+
+std::uint32_t arrayCount(std::uint32_t version) {
+    const WorldState state;
     std::uint32_t arrays = 0;
-    forEachArray(state, [&](std::string_view, const auto&) { ++arrays; });
+    forEachArrayIn(
+        version, [&](std::string_view, const auto&) { ++arrays; }, state);
     return arrays;
 }
 
-Status checkHead(const WorldState& base, std::uint64_t baseRoot, std::span<const std::byte> bytes) {
+Status checkHead(std::uint64_t baseRoot, std::span<const std::byte> bytes) {
     if (bytes.size() < headBytes + sumBytes) {
         return Error{"delta: " + number(bytes.size()) + " bytes are too few for its header of " +
                      number(headBytes) + " and its checksum"};
@@ -210,18 +223,20 @@ Status checkHead(const WorldState& base, std::uint64_t baseRoot, std::span<const
     if (std::memcmp(bytes.data(), magic, sizeof magic) != 0) {
         return Error{"delta: offset 0 does not hold the mark \"HUEDELT1\""};
     }
-    if (const auto version = get<std::uint32_t>(bytes, 8); version != deltaVersion) {
+    const auto version = get<std::uint32_t>(bytes, 8);
+    if (version != deltaVersion && version != rulesDeltaVersion) {
         return Error{"delta: offset 8 says version " + number(version) +
-                     "; this program reads version " + number(deltaVersion)};
+                     "; this program reads versions " + number(deltaVersion) + " and " +
+                     number(rulesDeltaVersion)};
     }
     const std::size_t end = bytes.size() - sumBytes;
     if (get<std::uint64_t>(bytes, end) != hash64(bytes.first(end))) {
         return Error{"delta: the checksum at offset " + number(end) +
                      " is not that of the bytes before it"};
     }
-    if (const auto arrays = get<std::uint32_t>(bytes, 12); arrays != arrayCount(base)) {
+    if (const auto arrays = get<std::uint32_t>(bytes, 12); arrays != arrayCount(version)) {
         return Error{"delta: offset 12 says " + number(arrays) + " arrays instead of " +
-                     number(arrayCount(base))};
+                     number(arrayCount(version))};
     }
     if (get<std::uint64_t>(bytes, 16) != baseRoot) {
         return Error{
@@ -235,24 +250,30 @@ Status checkHead(const WorldState& base, std::uint64_t baseRoot, std::span<const
 
 std::vector<std::byte> writeDelta(const WorldState& base, std::uint64_t baseRoot,
                                   const WorldState& state, std::uint64_t root) {
+    const bool rules = !base.rules.empty() || !state.rules.empty();
+    const std::uint32_t version = rules ? rulesDeltaVersion : deltaVersion;
     Writer out;
     out.value(magic);
-    out.value(deltaVersion);
-    out.value(arrayCount(state));
+    out.value(version);
+    out.value(arrayCount(version));
     out.value(baseRoot);
     out.value(root);
-    forEachArrayOf([&](std::string_view, const auto& from,
-                       const auto& to) { writeArray(out, base, from, state, to); },
-                   base, state);
+    forEachArrayIn(
+        version,
+        [&](std::string_view, const auto& from, const auto& to) {
+            writeArray(out, base, from, state, to);
+        },
+        base, state);
     return out.sealed();
 }
 
 Result<WorldState> readDelta(const WorldState& base, std::uint64_t baseRoot,
                              std::span<const std::byte> bytes) {
-    if (const Status fine = checkHead(base, baseRoot, bytes); !fine) return fine.error();
+    if (const Status fine = checkHead(baseRoot, bytes); !fine) return fine.error();
     WorldState state;
     Reader in(bytes.first(bytes.size() - sumBytes), headBytes);
-    forEachArrayOf(
+    forEachArrayIn(
+        get<std::uint32_t>(bytes, 8),
         [&](std::string_view name, const auto& from, auto& to) {
             if (in.problem().empty()) readArray(in, name, from, to);
         },

@@ -24,6 +24,8 @@ namespace huestep {
 
 /// Goes with `snapshotVersion`: both hold the same records.
 inline constexpr std::uint32_t deltaVersion = 2;
+/// Where one of the two worlds has rules: the same arrays and two more.
+inline constexpr std::uint32_t rulesDeltaVersion = 3;
 
 /// The roots are `fullRoot` of the two states.
 std::vector<std::byte> writeDelta(const WorldState& base, std::uint64_t baseRoot,

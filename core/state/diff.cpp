@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "core/rules/rules.h"
 #include "core/world/world_data.h"
 
 namespace huestep {
@@ -83,10 +84,30 @@ void nameRecord(const WorldState& s, std::string_view array, std::size_t i, Diff
             if (shape.id == c.shapeA) out.body = shape.body;
         }
         out.name = "contact " + std::to_string(c.shapeA) + "-" + std::to_string(c.shapeB);
-    } else if (array == "world") {
-        out.name = "world";
+    } else if (array == "world" || array == "rules") {
+        out.name = array;
     } else {
         name(array, i);
+    }
+}
+
+/// The field of the rules' state that a word is part of, by the name that the rules give it.
+void nameRulesField(const World& left, const World& right, std::size_t word, Difference& out) {
+    const std::span<const std::byte> a = left.rulesState();
+    const std::span<const std::byte> b = right.rulesState();
+    out.record = out.name = "rules";
+    for (const Field& field : left.rules()->fields()) {
+        const std::uint32_t size = sizeOf(field.type);
+        for (std::uint32_t k = 0; k < field.count; ++k) {
+            const std::size_t offset = field.offset + std::size_t{k} * size;
+            if (offset + size <= word * sizeof(RulesWord)) continue;
+            if (std::memcmp(&a[offset], &b[offset], size) == 0) continue;
+            out.field = field.name;
+            if (field.count > 1) out.field += "[" + std::to_string(k) + "]";
+            out.left = valueText(&a[offset], field.type);
+            out.right = valueText(&b[offset], field.type);
+            return;
+        }
     }
 }
 
@@ -108,6 +129,8 @@ std::optional<Difference> firstDifference(const World& left, const World& right)
             Difference d;
             if (compareFields(one[i], other[i], d)) {
                 nameRecord(a, array, i, d);
+                const bool same = left.rules() == right.rules() && left.rules() != nullptr;
+                if (array == "rulesWord" && same) nameRulesField(left, right, i, d);
                 found = d;
             }
         }

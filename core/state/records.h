@@ -337,6 +337,32 @@ inline constexpr auto fieldsOf<WorldInfo> = std::to_array<Field>({
 });
 static_assert(fieldsTile<WorldInfo>());
 
+/// By which rules the world is played, and their dice.
+struct RulesInfo {
+    std::array<std::uint8_t, caps::maxRulesName> name;  ///< zeros behind it
+    std::uint32_t version;
+    std::uint32_t seed;  ///< the dice were started with it
+    std::uint64_t dice;  ///< the generator's state, see `Game::roll`
+};
+template <>
+inline constexpr auto fieldsOf<RulesInfo> = std::to_array<Field>({
+    {"name", FieldType::U8, 0, caps::maxRulesName},
+    {"version", FieldType::U32, 32},
+    {"seed", FieldType::U32, 36},
+    {"dice", FieldType::U64, 40},
+});
+static_assert(fieldsTile<RulesInfo>());
+
+/// Four bytes of the state of the rules; which fields they belong to, the rules know.
+struct RulesWord {
+    std::uint32_t value;
+};
+template <>
+inline constexpr auto fieldsOf<RulesWord> = std::to_array<Field>({
+    {"value", FieldType::U32, 0},
+});
+static_assert(fieldsTile<RulesWord>());
+
 /// A place where players appear.
 struct SpawnPoint {
     Vec2 position;  ///< m

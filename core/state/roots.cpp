@@ -44,12 +44,15 @@ std::vector<std::uint64_t> motionLeaves(const WorldState& state) {
 
 std::uint64_t motionRoot(const WorldState& state) {
     const WorldInfo& info = state.info();
-    const std::array<std::uint64_t, 6> all{rootOf(motionLeaves(state)),
-                                           info.tick,
-                                           state.motions.size(),
-                                           info.nextBody,
-                                           info.nextShape,
-                                           info.nextJoint};
+    std::array<std::uint64_t, 8> all{rootOf(motionLeaves(state)),
+                                     info.tick,
+                                     state.motions.size(),
+                                     info.nextBody,
+                                     info.nextShape,
+                                     info.nextJoint};
+    if (state.rules.empty()) return hash64Of(std::span<const std::uint64_t>(all).first(6));
+    all[6] = treeOf(state.rules);
+    all[7] = treeOf(state.rulesWords);
     return hash64Of(std::span<const std::uint64_t>(all));
 }
 
@@ -58,6 +61,7 @@ std::uint64_t fullRoot(const WorldState& state, RootCache& cache) {
     std::vector<std::uint64_t> all;
     forEachArray(state, [&](std::string_view, const auto& array) {
         using Record = std::remove_cvref_t<decltype(array[0])>;
+        if (isOfRules<Record> && state.rules.empty()) return;
         if constexpr (isDefinition<Record>) {
             if (!cache.definitionsKnown) definitions.push_back(treeOf(array));
         } else {

@@ -22,7 +22,7 @@ std::vector<std::uint64_t> leavesOf(std::span<const std::byte> bytes, std::size_
 /// The top of the tree over the leaves; 0 for none.
 std::uint64_t rootOf(std::vector<std::uint64_t> nodes);
 
-/// Over every body's motion, the tick and the counters.
+/// Over every body's motion, the tick, the counters and, if there are rules, their state.
 std::uint64_t motionRoot(const WorldState& state);
 std::vector<std::uint64_t> motionLeaves(const WorldState& state);
 

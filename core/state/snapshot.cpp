@@ -45,6 +45,15 @@ std::string number(std::uint64_t n) {
     return std::to_string(n);
 }
 
+/// The arrays that a snapshot of this version holds.
+template <class State, class Visit>
+void forEachArrayIn(std::uint32_t version, State& state, Visit&& visit) {
+    forEachArray(state, [&](std::string_view name, auto& array) {
+        using Record = std::remove_cvref_t<decltype(array[0])>;
+        if (!isOfRules<Record> || version == rulesSnapshotVersion) visit(name, array);
+    });
+}
+
 std::size_t pieces(std::size_t bytes) {
     return (bytes + snapshotPiece - 1) / snapshotPiece;
 }
@@ -68,25 +77,56 @@ Status checkPieces(std::span<const std::byte> bytes, std::size_t contentBytes) {
     return Done{};
 }
 
+/// The version, if this program reads it and the header is whole.
+Result<std::uint32_t> readHead(std::span<const std::byte> bytes) {
+    constexpr std::size_t headBytes = 16;
+    if (bytes.size() < headBytes) {
+        return Error{"snapshot: " + number(bytes.size()) + " bytes are too few for its header of " +
+                     number(headBytes)};
+    }
+    if (std::memcmp(bytes.data(), magic, sizeof magic) != 0) {
+        return Error{"snapshot: offset 0 does not hold the mark \"HUESNAP1\""};
+    }
+    const auto version = get<std::uint32_t>(bytes, 8);
+    if (version != snapshotVersion && version != rulesSnapshotVersion) {
+        return Error{"snapshot: offset 8 says version " + number(version) +
+                     "; this program reads versions " + number(snapshotVersion) + " and " +
+                     number(rulesSnapshotVersion)};
+    }
+    std::uint32_t arrays = 0;
+    const WorldState state;
+    forEachArrayIn(version, state, [&](std::string_view, const auto&) { ++arrays; });
+    if (const auto count = get<std::uint32_t>(bytes, 12); count != arrays) {
+        return Error{"snapshot: offset 8 says version " + number(version) + ", offset 12 says " +
+                     number(count) + " arrays instead of its " + number(arrays)};
+    }
+    if (const std::size_t tableEnd = headBytes + arrays * std::size_t{8}; bytes.size() < tableEnd) {
+        return Error{"snapshot: " + number(bytes.size()) + " bytes are too few for its table of " +
+                     number(tableEnd)};
+    }
+    return version;
+}
+
 }  // namespace
 
 std::vector<std::byte> writeSnapshot(const WorldState& state) {
+    const std::uint32_t version = state.rules.empty() ? snapshotVersion : rulesSnapshotVersion;
     std::uint32_t arrays = 0;
     std::size_t size = 16;
-    forEachArray(state, [&](std::string_view, const auto& array) {
+    forEachArrayIn(version, state, [&](std::string_view, const auto& array) {
         ++arrays;
         size += 8 + array.size() * sizeof(array[0]);
     });
     std::vector<std::byte> out(size + pieces(size) * 8 + 8);
     Cursor cursor(out);
     cursor.value(magic);
-    cursor.value(snapshotVersion);
+    cursor.value(version);
     cursor.value(arrays);
-    forEachArray(state, [&](std::string_view, const auto& array) {
+    forEachArrayIn(version, state, [&](std::string_view, const auto& array) {
         cursor.value(static_cast<std::uint32_t>(sizeof(array[0])));
         cursor.value(static_cast<std::uint32_t>(array.size()));
     });
-    forEachArray(state, [&](std::string_view, const auto& array) {
+    forEachArrayIn(version, state, [&](std::string_view, const auto& array) {
         cursor.put(std::as_bytes(std::span(array)));
     });
     std::vector<std::uint64_t> sums;
@@ -99,30 +139,14 @@ std::vector<std::byte> writeSnapshot(const WorldState& state) {
 }
 
 Result<WorldState> readSnapshot(std::span<const std::byte> bytes) {
+    const Result<std::uint32_t> version = readHead(bytes);
+    if (!version) return version.error();
+    const std::size_t tableEnd = 16 + std::size_t{8} * get<std::uint32_t>(bytes, 12);
     WorldState state;
-    std::uint32_t arrays = 0;
-    forEachArray(state, [&](std::string_view, const auto&) { ++arrays; });
-    const std::size_t tableEnd = 16 + arrays * std::size_t{8};
-    if (bytes.size() < tableEnd) {
-        return Error{"snapshot: " + number(bytes.size()) + " bytes are too few for its header of " +
-                     number(tableEnd)};
-    }
-    if (std::memcmp(bytes.data(), magic, sizeof magic) != 0) {
-        return Error{"snapshot: offset 0 does not hold the mark \"HUESNAP1\""};
-    }
-    if (const auto version = get<std::uint32_t>(bytes, 8); version != snapshotVersion) {
-        return Error{"snapshot: offset 8 says version " + number(version) +
-                     "; this program reads version " + number(snapshotVersion)};
-    }
-    if (const auto count = get<std::uint32_t>(bytes, 12); count != arrays) {
-        return Error{"snapshot: offset 12 says " + number(count) + " arrays instead of " +
-                     number(arrays)};
-    }
-
     std::size_t entry = 16;
     std::size_t end = tableEnd;
     std::string problem;
-    forEachArray(state, [&](std::string_view name, const auto& array) {
+    forEachArrayIn(*version, state, [&](std::string_view name, const auto& array) {
         const auto recordBytes = get<std::uint32_t>(bytes, entry);
         const auto records = get<std::uint32_t>(bytes, entry + 4);
         if (problem.empty() && (recordBytes != sizeof(array[0]) || records > maxRecords)) {
@@ -143,13 +167,17 @@ Result<WorldState> readSnapshot(std::span<const std::byte> bytes) {
 
     entry = 16;
     std::size_t from = tableEnd;
-    forEachArray(state, [&](std::string_view, auto& array) {
+    forEachArrayIn(*version, state, [&](std::string_view, auto& array) {
         array.resize(get<std::uint32_t>(bytes, entry + 4));
         const std::size_t size = array.size() * sizeof(array[0]);
         if (size > 0) std::memcpy(array.data(), bytes.data() + from, size);
         from += size;
         entry += 8;
     });
+    if (*version == rulesSnapshotVersion && state.rules.empty()) {
+        return Error{"snapshot: offset 8 says version " + number(*version) +
+                     ", that of worlds with rules, and there are none"};
+    }
     if (const Status valid = validate(state); !valid) {
         return Error{"snapshot: " + valid.error().message};
     }

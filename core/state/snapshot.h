@@ -21,6 +21,8 @@ namespace huestep {
 
 /// Of the records' fields, too: who changes one gives the layout a new version.
 inline constexpr std::uint32_t snapshotVersion = 2;
+/// Of a world with rules: the same arrays and two more.
+inline constexpr std::uint32_t rulesSnapshotVersion = 3;
 inline constexpr std::size_t snapshotPiece = 1024;
 
 std::vector<std::byte> writeSnapshot(const WorldState& state);

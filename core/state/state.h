@@ -26,6 +26,8 @@ struct WorldState {
     std::vector<BodyInfo> playerBody;      ///< what players get: none or one, id 0
     std::vector<BodyMotion> playerMotion;  ///< likewise
     std::vector<ShapeInfo> playerShapes;   ///< its shapes, id and body 0
+    std::vector<RulesInfo> rules;          ///< none or one
+    std::vector<RulesWord> rulesWords;     ///< their state; none without rules
 
     [[nodiscard]] WorldInfo& info() { return world.front(); }
     [[nodiscard]] const WorldInfo& info() const { return world.front(); }
@@ -68,6 +70,8 @@ void forEachArrayOf(Visit&& visit, States&... s) {
     visit(std::string_view("playerBody"), s.playerBody...);
     visit(std::string_view("playerMotion"), s.playerMotion...);
     visit(std::string_view("playerShape"), s.playerShapes...);
+    visit(std::string_view("rules"), s.rules...);
+    visit(std::string_view("rulesWord"), s.rulesWords...);
 }
 
 /// The same of one state.
@@ -75,6 +79,15 @@ template <class State, class Visit>
 void forEachArray(State& s, Visit&& visit) {
     forEachArrayOf(visit, s);
 }
+
+/// Arrays that hashes, snapshots and deltas leave out where there are no rules, so that these are
+/// what they were before there were any.
+template <class Record>
+inline constexpr bool isOfRules =
+    std::is_same_v<Record, RulesInfo> || std::is_same_v<Record, RulesWord>;
+
+/// Most bytes that rules may have as state.
+inline constexpr std::size_t maxRulesBytes = std::size_t{64} << 10;
 
 /// Records that change by command alone.
 template <class Record>

@@ -207,6 +207,19 @@ std::string badPlayers(const WorldState& s) {
     return {};
 }
 
+/// What the rules themselves say of their state is asked where they are known.
+std::string badRules(const WorldState& s) {
+    if (s.rules.size() > 1) return "rules: more than one";
+    if (s.rules.empty()) return s.rulesWords.empty() ? "" : "rulesWord: without rules";
+    if (s.rulesWords.size() * sizeof(RulesWord) > maxRulesBytes) return "rulesWord: too many";
+    const auto& name = s.rules.front().name;
+    const auto end = std::find(name.begin(), name.end(), std::uint8_t{0});
+    if (!isRulesName(std::string(name.begin(), end)))
+        return "rules name: not 1 to 32 of [a-z0-9_-]";
+    const bool clean = std::all_of(end, name.end(), [](std::uint8_t c) { return c == 0; });
+    return clean ? "" : "rules name: more than zeros behind it";
+}
+
 template <class Record, class Check>
 std::string firstBad(std::string_view name, const std::vector<Record>& array, Check check) {
     for (std::size_t i = 0; i < array.size(); ++i) {
@@ -241,6 +254,7 @@ std::string badState(const WorldState& s) {
     if (bad.empty()) bad = firstBad("joint", s.joints, fault);
     if (bad.empty()) bad = badReferences(s);
     if (bad.empty()) bad = badPlayers(s);
+    if (bad.empty()) bad = badRules(s);
     return bad;
 }
 

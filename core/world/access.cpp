@@ -101,6 +101,8 @@ World::World(const World& other) : m_data(std::make_unique<Data>()) {
     m_data->state = other.m_data->state;
     m_data->events = other.m_data->events;
     m_data->report = other.m_data->report;
+    m_data->rules = other.m_data->rules;
+    m_data->knownRules = other.m_data->knownRules;
 }
 
 World& World::operator=(const World& other) {
@@ -108,20 +110,26 @@ World& World::operator=(const World& other) {
     return *this;
 }
 
-Result<World> World::create(const Scene& scene) {
+Result<World> World::create(const Scene& scene, RulesSet known) {
     if (const Status fine = check(scene); !fine) return fine.error();
     auto data = std::make_unique<Data>();
     data->build(scene);
+    data->knownRules = known;
+    if (const Status begun = data->beginRules(scene); !begun) return begun.error();
     // What a scene may say and what a state may hold differ by rounding at the rims.
     if (const Status sound = validate(data->state); !sound) return sound.error();
     return World(std::move(data));
 }
 
-Result<World> World::restore(std::span<const std::byte> snapshot) {
+Result<World> World::restore(std::span<const std::byte> snapshot, RulesSet known) {
     Result<WorldState> state = readSnapshot(snapshot);
     if (!state) return state.error();
     auto data = std::make_unique<Data>();
     data->state = std::move(*state);
+    data->knownRules = known;
+    if (const Status bound = data->bindRules(); !bound) {
+        return Error{"snapshot: " + bound.error().message};
+    }
     return World(std::move(data));
 }
 
@@ -142,6 +150,10 @@ Result<World> World::restore(const World& base, std::span<const std::byte> delta
     if (!state) return state.error();
     auto data = std::make_unique<Data>();
     data->state = std::move(*state);
+    data->knownRules = base.m_data->knownRules;
+    if (const Status bound = data->bindRules(); !bound) {
+        return Error{"delta: " + bound.error().message};
+    }
     return World(std::move(data));
 }
 

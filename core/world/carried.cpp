@@ -28,6 +28,7 @@ void Carried::become(const Carried& other, bool related) {
     events = other.events;
     report = other.report;
     roots = other.roots;
+    rules = other.rules;
     activity = other.activity;
 
     acc.definitionsStale = its.definitionsStale;

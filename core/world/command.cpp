@@ -44,6 +44,10 @@ std::string_view describe(Rejection reason) {
             return "the player is already there";
         case Rejection::TooFar:
             return "the point is too far from the body";
+        case Rejection::UnknownAction:
+            return "the world's rules know no such action";
+        case Rejection::AgainstRules:
+            return "the rules do not allow it, or not now";
         case Rejection::TooCrowded:
             return "too much is there already";
     }

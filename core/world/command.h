@@ -109,9 +109,19 @@ struct SetTarget {
     friend bool operator==(const SetTarget&, const SetTarget&) = default;
 };
 
+/// An action of the game itself: what it means, the world's rules say (core/rules/rules.h). Without
+/// rules it is rejected.
+struct Custom {
+    std::uint32_t kind = 0;   ///< which of the rules' actions
+    std::uint32_t id = 0;     ///< of a body, a player or what else the rules count
+    std::int32_t number = 0;  ///< how many, which
+    Vec2 vector;              ///< a place, a direction, a strength
+    friend bool operator==(const Custom&, const Custom&) = default;
+};
+
 using Action =
     std::variant<AddPlayer, RemovePlayer, ApplyImpulse, ApplyForce, Grab, MoveGrab, Release, Spawn,
-                 RemoveBody, RemoveJoint, SetMotor, SetVelocity, SetTarget>;
+                 RemoveBody, RemoveJoint, SetMotor, SetVelocity, SetTarget, Custom>;
 
 /// One action of one author. `sequence` counts the author's commands from 1; a world remembers
 /// the last one applied or rejected per author as state and rejects what is not above it, so a
@@ -140,8 +150,10 @@ enum class Rejection : std::uint16_t {
     NothingGrabbed,
     NoMotor,  ///< the joint has no motor that the scene enabled
     PlayerExists,
-    TooFar,      ///< a point not on or near the body, or a target beyond a tick at the top speed
-    TooCrowded,  ///< a spawned shape would overlap too many others
+    TooFar,         ///< a point not on or near the body, or a target beyond a tick at the top speed
+    TooCrowded,     ///< a spawned shape would overlap too many others
+    UnknownAction,  ///< the world's rules know no such action, or it has no rules
+    AgainstRules,   ///< the rules do not allow it, or not now
 };
 
 /// The reason in words, for a person.

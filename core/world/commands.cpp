@@ -2,9 +2,12 @@
 // Both are functions of (state, commands) alone.
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "core/math/finite.h"
 #include "core/math/trig.h"
+#include "core/rules/rules.h"
 #include "core/scene/in_double.h"
 #include "core/world/world_data.h"
 
@@ -25,6 +28,29 @@ bool inWorld(Vec2 p) {
     const auto in = [](float v) { return v >= -maxCoordinate && v <= maxCoordinate; };
     return isFinite(p) && in(p.x) && in(p.y);
 }
+
+/// Whether the numbers of an action are finite; those of a definition the world judges as a whole.
+bool hasFiniteNumbers(const Action& action) {
+    const auto fine = []<class A>(const A& a) {
+        if constexpr (requires { a.impulse; })
+            return isFinite(a.impulse) && isFinite(a.point);
+        else if constexpr (requires { a.force; })
+            return isFinite(a.force) && isFinite(a.point);
+        else if constexpr (std::is_same_v<A, Grab>)
+            return isFinite(a.point) && isFinite(a.target);
+        else if constexpr (std::is_same_v<A, MoveGrab>)
+            return isFinite(a.target);
+        else if constexpr (std::is_same_v<A, SetMotor>)
+            return isFinite(a.speed);
+        else if constexpr (std::is_same_v<A, Custom>)
+            return isFinite(a.vector);
+        else
+            return true;
+    };
+    return std::visit(fine, action);
+}
+
+}  // namespace
 
 /// One tick's commands against one world. Each `apply` either does all of its command or nothing.
 class Applier {
@@ -49,13 +75,55 @@ class Applier {
         }
         m_author = command.author;
         m_firstBody = 0;
-        outcome.reason =
-            std::visit([this](const auto& action) { return apply(action); }, command.action);
+        outcome.reason = judgeByRules(command);
+        if (outcome.reason == Rejection::None) {
+            outcome.reason =
+                std::visit([this](const auto& action) { return apply(action); }, command.action);
+        }
         outcome.firstBody = m_firstBody;
         return outcome;
     }
 
+    /// For the rules, while a command is judged or after all of them.
+    RulesOutcome act(const RulesAction& action, PlayerId as) {
+        if (!m_world.findPlayer(as)) return {Rejection::UnknownAuthor, 0};
+        const PlayerId author = std::exchange(m_author, as);
+        const BodyId firstBody = std::exchange(m_firstBody, 0);
+        RulesOutcome outcome;
+        outcome.reason = std::visit([this](const auto& a) { return apply(a); }, action);
+        outcome.firstBody = std::exchange(m_firstBody, firstBody);
+        m_author = author;
+        return outcome;
+    }
+
+    RulesOutcome respawn(PlayerId id, Vec2 position) {
+        PlayerRecord* player = m_world.findPlayer(id);
+        if (id == 0 || player == nullptr) return {Rejection::UnknownAuthor, 0};
+        if (m_state.playerBody.empty()) return {Rejection::NotAllowed, 0};
+        if (!inWorld(position)) return {Rejection::NotFinite, 0};
+        if (!roomFor(1, m_state.playerShapes.size(), 0)) return {Rejection::OverLimit, 0};
+        if (const auto place = m_world.findBody(player->body)) markBody(*place);
+        player->body = addPlayerBody(id, position);
+        return {Rejection::None, player->body};
+    }
+
  private:
+    /// Players' commands and the game's own are the rules' to refuse.
+    Rejection judgeByRules(const Command& command) {
+        const bool custom = std::holds_alternative<Custom>(command.action);
+        if (m_world.rules == nullptr || (command.author == 0 && !custom)) return Rejection::None;
+        if (!hasFiniteNumbers(command.action)) return Rejection::NotFinite;
+        if (const auto* spawn = std::get_if<Spawn>(&command.action)) {
+            if (const Rejection r = m_world.judge(*spawn, m_author); r != Rejection::None) return r;
+        }
+        Game game(m_world, *this);
+        return m_world.rules->commandBytes(m_world.rulesState(), game, command);
+    }
+
+    Rejection apply(const Custom&) {
+        return m_world.rules == nullptr ? Rejection::UnknownAction : Rejection::None;
+    }
+
     [[nodiscard]] bool host() const { return m_author == 0; }
     PlayerRecord& author() { return *m_world.findPlayer(m_author); }
 
@@ -98,16 +166,21 @@ class Applier {
     }
 
     BodyId spawnPlayerBody(const PlayerRecord& player) {
+        const std::vector<SpawnPoint>& points = m_state.spawnPoints;
+        if (points.empty()) return addPlayerBody(player.id, std::nullopt);
+        return addPlayerBody(player.id, points[player.joined % points.size()].position);
+    }
+
+    /// With its origin there, or where the scene says.
+    BodyId addPlayerBody(PlayerId player, std::optional<Vec2> origin) {
         m_world.changeDefinitions();
         WorldInfo& info = m_state.info();
         BodyInfo body = m_state.playerBody.front();
         BodyMotion motion = m_state.playerMotion.front();
         body.id = info.nextBody++;
-        body.owner = player.id;
-        if (!m_state.spawnPoints.empty()) {
-            const Vec2 point =
-                m_state.spawnPoints[player.joined % m_state.spawnPoints.size()].position;
-            motion.position = point + rotate(motion.rotation, body.localCenter);
+        body.owner = player;
+        if (origin) {
+            motion.position = *origin + rotate(motion.rotation, body.localCenter);
             motion.position = canonicalZero(motion.position);
         }
         m_state.bodies.push_back(body);
@@ -344,17 +417,29 @@ class Applier {
     std::uint32_t m_fromPlayers = 0;
 };
 
-}  // namespace
-
 void World::Data::applyCommands(std::span<const Command> commands) {
     // Frames come sorted; whoever calls with another order gets the order of the key all the same.
     std::vector<Command> sorted(commands.begin(), commands.end());
     sortByKey(sorted);
     Applier applier(*this);
     for (const Command& command : sorted) events.commands.push_back(applier.apply(command));
+    if (rules != nullptr) {
+        Game game(*this, applier);
+        rules->beforeBytes(rulesState(), game);
+    }
     // A body that came after a force of the same tick has none.
     if (!forces.empty()) forces.resize(state.bodies.size());
     removeMarked();
+}
+
+Game::Game(World::Data& world, Applier& applier) : Seen(world), m_data(world), m_applier(applier) {}
+
+RulesOutcome Game::act(const RulesAction& action, PlayerId as) {
+    return m_applier.act(action, as);
+}
+
+RulesOutcome Game::respawn(PlayerId player, Vec2 position) {
+    return m_applier.respawn(player, position);
 }
 
 }  // namespace huestep

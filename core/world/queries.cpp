@@ -1,5 +1,7 @@
 // Queries: rays and shapes against the world, in key order.
 
+#include "core/world/queries.h"
+
 #include <algorithm>
 
 #include "core/collision/cast.h"
@@ -9,8 +11,15 @@
 namespace huestep {
 
 std::vector<RayHit> World::castRay(Vec2 from, Vec2 to) const {
+    return huestep::castRay(m_data->state, from, to);
+}
+
+std::vector<ShapeId> World::overlap(const ShapeDef& shape, const Pose& pose) const {
+    return overlapping(m_data->state, shape, pose);
+}
+
+std::vector<RayHit> castRay(const WorldState& state, Vec2 from, Vec2 to) {
     std::vector<RayHit> hits;
-    const WorldState& state = m_data->state;
     std::uint32_t body = 0;
     for (const ShapeInfo& shape : state.shapes) {
         while (state.bodies[body].id != shape.body) ++body;
@@ -29,9 +38,8 @@ std::vector<RayHit> World::castRay(Vec2 from, Vec2 to) const {
     return hits;
 }
 
-std::vector<ShapeId> World::overlap(const ShapeDef& shape, const Pose& pose) const {
+std::vector<ShapeId> overlapping(const WorldState& state, const ShapeDef& shape, const Pose& pose) {
     std::vector<ShapeId> found;
-    const WorldState& state = m_data->state;
     BodyDef probe;
     probe.shapes.push_back(shape);
     if (!check(probe, "shape")) return found;

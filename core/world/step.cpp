@@ -22,7 +22,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
     forces.clear();
     StageTimer timer(with.clock, report);
 
-    applyCommands(commands);  // state, commands → bodies, shapes, joints
+    applyCommands(commands);  // state, commands, rules → bodies, shapes, joints
     timer.done(Stage::Commands);
 
     const PlanLimits limits = limitsOf(with.shareAll);
@@ -80,6 +80,7 @@ void World::Data::step(std::span<const Command> commands, const StepResources& w
 
     ++state.info().tick;
     contactsInState = false;
+    if (rules != nullptr) afterRules();  // motions, events → the state of the rules
 }
 
 namespace {

@@ -173,13 +173,20 @@ class Checkpoint {
     std::unique_ptr<Data> m_data;
 };
 
+class Rules;  // core/rules/rules.h
+/// Rules of games that a program knows; they outlive every world.
+using RulesSet = std::span<const Rules* const>;
+RulesSet builtInRules();  ///< core/games
+
 class World {
  public:
-    /// Builds the world of a scene; fails with the sentence of `check(scene)`.
-    static Result<World> create(const Scene& scene);
+    /// Builds the world of a scene; fails with the sentence of `check(scene)`, or where the scene
+    /// names rules that are not known or do not fit it.
+    static Result<World> create(const Scene& scene, RulesSet known = builtInRules());
 
     /// The same state from a snapshot. Every byte is checked: a sentence names what and where.
-    static Result<World> restore(std::span<const std::byte> snapshot);
+    static Result<World> restore(std::span<const std::byte> snapshot,
+                                 RulesSet known = builtInRules());
 
     /// The same state from a delta and the world that it was made against, or one in the same
     /// state. Every byte is checked: a sentence names what and where.
@@ -233,6 +240,13 @@ class World {
     [[nodiscard]] std::vector<ContactState> contacts() const;
     /// Empty after a restore or a copy until the next step: views come from the last step's work.
     [[nodiscard]] std::vector<ContactView> contactViews() const;
+
+    /// The rules that the world is played by, or null.
+    [[nodiscard]] const Rules* rules() const;
+    /// Their state, see `rulesStateOf`; nothing without rules.
+    [[nodiscard]] std::span<const std::byte> rulesState() const;
+    /// How the game stands, in a line for people; empty without rules.
+    [[nodiscard]] std::string score() const;
 
     /// How the last step was laid out; empty before the first and after a restore or a copy, but
     /// for a restored checkpoint. Costs a walk over all constraints.

@@ -103,6 +103,7 @@ struct Carried {
     Events events;
     StepReport report;
     mutable RootCache roots;
+    const Rules* rules = nullptr;        // those that `state.rules` names
     std::vector<std::uint8_t> activity;  // by body, in the last step
     Stamp definitionsStamp = 0;          // of bodies, shapes, joints and what players get
 
@@ -155,6 +156,7 @@ struct World::Data : Carried {
     mutable Gathered gathered;  // of this world's `state.contacts`
 
     PlanLimits planLimits;  // standard but in tests
+    RulesSet knownRules;    // among which those of a delta are looked for
 
     // Of one step.
     std::vector<BodyForce> forces;  // by body; empty: none
@@ -215,6 +217,14 @@ struct World::Data : Carried {
 
     // commands.cpp
     void applyCommands(std::span<const Command> commands);
+
+    // rules.cpp
+    Status beginRules(const Scene& scene);
+    /// Finds what `state.rules` names among those known, and lets it judge the state.
+    Status bindRules();
+    [[nodiscard]] std::span<std::byte> rulesState();
+    void afterRules();
+    void cleanRulesState();
 
     // step.cpp
     void step(std::span<const Command> commands, const StepResources& with);

@@ -14,7 +14,7 @@ namespace huestep::protocol::flat {
 
 // clang-format off
 template <class M> inline constexpr Layout layoutOf{};
-template <> inline constexpr Layout layoutOf<Hello>{6, 3};
+template <> inline constexpr Layout layoutOf<Hello>{6, 4};
 template <> inline constexpr Layout layoutOf<Welcome>{6, 2};
 template <> inline constexpr Layout layoutOf<Intent>{4, 1};
 template <> inline constexpr Layout layoutOf<Frame>{3, 2};
@@ -27,7 +27,7 @@ template <> inline constexpr Layout layoutOf<HashNodes>{2, 1};
 template <> inline constexpr Layout layoutOf<DesyncReport>{4, 3};
 template <> inline constexpr Layout layoutOf<Ping>{3, 0};
 template <> inline constexpr Layout layoutOf<Bye>{1, 1};
-template <> inline constexpr Layout layoutOf<View>{3, 7};
+template <> inline constexpr Layout layoutOf<View>{3, 8};
 template <> inline constexpr Layout layoutOf<Command>{5, 1};
 template <> inline constexpr Layout layoutOf<Spawn>{0, 2};
 template <> inline constexpr Layout layoutOf<BodyDef>{7, 1};
@@ -145,6 +145,8 @@ struct ActionFields {
             io.number("player", 4, a.player);
         } else if constexpr (std::is_same_v<Kind, RemoveJoint> || std::is_same_v<Kind, SetMotor>) {
             io.number("joint", 4, a.joint);
+        } else if constexpr (std::is_same_v<Kind, Custom>) {
+            io.number("kind", 4, a.kind);
         } else if constexpr (requires { a.body; }) {
             io.number("body", 4, a.body);
         }
@@ -175,6 +177,10 @@ struct ActionFields {
         } else if constexpr (std::is_same_v<Kind, SetTarget>) {
             point(io, "position", 20, 32, a.position);
             rotation(io, "rotation", 24, a.rotation, 0.0f);
+        } else if constexpr (std::is_same_v<Kind, Custom>) {
+            io.number("id", 20, a.id);
+            io.number("number", 32, a.number);
+            point(io, "vector", 24, a.vector);
         } else if constexpr (std::is_same_v<Kind, Spawn>) {
             spawn(a);
         }
@@ -309,6 +315,7 @@ void fields(Io& io, M& m) {
         io.number("haveTick", 32, m.haveTick);
         io.number("haveHash", 40, m.haveHash);
         io.numbers("ticket", 2, m.ticket, maxTicketBytes);
+        io.numbers("rules", 3, m.rules, maxRules);
     } else if constexpr (std::is_same_v<Kind, Welcome>) {
         welcomeFields(io, m);
     } else if constexpr (std::is_same_v<Kind, Intent>) {

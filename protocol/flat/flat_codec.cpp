@@ -59,6 +59,7 @@ void viewFields(FlatWriter& io, const View& m) {
                });
     io.numbers("vertices", 5, verticesOf(m.shapes), 2 * maxPolygonVertices * maxViewShapes);
     io.numbers("joints", 6, numbersOf(m.joints), 4 * maxViewJoints);
+    io.text("score", 7, m.score, maxScoreText);
 }
 
 struct Flat {

@@ -86,6 +86,14 @@ void put(Out to, const SetTarget& action) {
     putRotation(target.getRotation(), action.rotation);
 }
 
+void put(Out to, const Custom& action) {
+    auto custom = to.initCustom();
+    custom.setKind(action.kind);
+    custom.setId(action.id);
+    custom.setNumber(action.number);
+    putPoint(custom.getVector(), action.vector);
+}
+
 Action readApplyImpulse(Reading& in, schema::Command::Action::ApplyImpulse::Reader from) {
     return ApplyImpulse{from.getBody(), in.point("impulse", from.getImpulse()),
                         in.point("point", from.getPoint())};
@@ -116,6 +124,11 @@ Action readSetVelocity(Reading& in, schema::Command::Action::SetVelocity::Reader
 Action readSetTarget(Reading& in, schema::Command::Action::SetTarget::Reader from) {
     return SetTarget{from.getBody(), in.point("position", from.getPosition()),
                      in.rotation("rotation", from.getRotation())};
+}
+
+Action readCustom(Reading& in, schema::Command::Action::Custom::Reader from) {
+    return Custom{from.getKind(), from.getId(), from.getNumber(),
+                  in.point("vector", from.getVector())};
 }
 
 Action readAction(Reading& in, From from) {
@@ -154,6 +167,8 @@ Action readAction(Reading& in, From from) {
             return in.at("setVelocity", [&] { return readSetVelocity(in, from.getSetVelocity()); });
         case Which::SET_TARGET:
             return in.at("setTarget", [&] { return readSetTarget(in, from.getSetTarget()); });
+        case Which::CUSTOM:
+            return in.at("custom", [&] { return readCustom(in, from.getCustom()); });
     }
     in.refuse("unknown action " + std::to_string(static_cast<unsigned>(from.which())));
 }

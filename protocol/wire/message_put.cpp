@@ -61,7 +61,7 @@ void putDefinitions(schema::View::Builder to, const View& view) {
 
 std::size_t contentWords(const Hello& message) {
     return textWords(message.session) + (message.resume ? byteWords(message.resume->size()) : 0) +
-           byteWords(message.ticket.size());
+           byteWords(message.ticket.size()) + message.rules.size();
 }
 std::size_t contentWords(const Welcome& message) {
     return textWords(message.session) + byteWords(message.resume.size());
@@ -89,7 +89,7 @@ std::size_t contentWords(const View& message) {
            structListWords<schema::View::Contact>(message.contacts.size()) +
            byteWords(4 * message.bodies.size()) + 2 * message.joints.size() +
            structListWords<schema::View::Shape>(message.shapes.size()) +
-           byteWords(4 * vertexFloats(message));
+           byteWords(4 * vertexFloats(message)) + textWords(message.score);
 }
 
 void put(schema::Hello::Builder to, const Hello& message) {
@@ -104,6 +104,9 @@ void put(schema::Hello::Builder to, const Hello& message) {
     to.setHaveTick(message.haveTick);
     to.setHaveHash(message.haveHash);
     if (!message.ticket.empty()) to.setTicket(dataOf(message.ticket.data(), message.ticket.size()));
+    if (message.rules.empty()) return;
+    auto rules = to.initRules(static_cast<unsigned>(message.rules.size()));
+    for (unsigned i = 0; i < rules.size(); ++i) rules.set(i, message.rules[i]);
 }
 
 void put(schema::Welcome::Builder to, const Welcome& message) {
@@ -230,6 +233,7 @@ void put(schema::View::Builder to, const View& message) {
             joints.set(at++, joint.b.y);
         }
     }
+    if (!message.score.empty()) to.setScore(textOf(message.score));
 }
 
 }  // namespace huestep::protocol::wire

@@ -155,6 +155,9 @@ Hello read(Reading& in, schema::Hello::Reader from) {
     in.sizeOf("ticket", ticket, maxTicketBytes, 1);
     const auto bytes = std::as_bytes(std::span(ticket.begin(), ticket.size()));
     message.ticket.assign(bytes.begin(), bytes.end());
+    const auto rules = from.getRules();
+    in.sizeOf("rules", rules, maxRules, 8);
+    message.rules = numbers<std::uint64_t>(rules);
     return message;
 }
 
@@ -289,6 +292,7 @@ View read(Reading& in, schema::View::Reader from) {
     message.bodies = numbers<BodyId>(bodies);
     message.shapes = readShapes(in, from, message.poses.size());
     message.joints = readJoints(in, from.getJoints());
+    message.score = text(in, "score", from.getScore(), maxScoreText);
     return message;
 }
 

@@ -87,6 +87,43 @@ PlayerDef readPlayers(Reading& in, schema::Players::Reader from) {
     return players;
 }
 
+void put(schema::Rules::Builder to, const RulesDef& rules) {
+    to.setName(::kj::StringPtr(rules.name.c_str(), rules.name.size()));
+    to.setVersion(rules.version);
+    to.setSeed(rules.seed);
+    if (rules.parameters.empty()) return;
+    auto parameters = to.initParameters(static_cast<unsigned>(rules.parameters.size()));
+    for (unsigned i = 0; i < parameters.size(); ++i) {
+        const RulesParameter& parameter = rules.parameters[i];
+        parameters[i].setName(::kj::StringPtr(parameter.name.c_str(), parameter.name.size()));
+        parameters[i].setValue(parameter.value);
+    }
+}
+
+RulesDef readRules(Reading& in, schema::Rules::Reader from) {
+    const auto name = [&in](::capnp::Text::Reader text) {
+        return in.text("name", {text.begin(), text.size()}, caps::maxRulesName);
+    };
+    RulesDef rules{name(from.getName()), from.getVersion(), from.getSeed(), {}};
+    const auto parameters = from.getParameters();
+    const std::size_t count = in.sizeOf("parameters", parameters, caps::maxRulesParameters,
+                                        structBytes<schema::Rules::Parameter>());
+    for (unsigned i = 0; i < count; ++i) {
+        rules.parameters.push_back(in.at("parameters", i, [&] {
+            return RulesParameter{name(parameters[i].getName()),
+                                  in.real("value", parameters[i].getValue())};
+        }));
+    }
+    return rules;
+}
+
+std::size_t contentWords(const RulesDef& rules) {
+    std::size_t words =
+        textWords(rules.name) + structListWords<schema::Rules::Parameter>(rules.parameters.size());
+    for (const RulesParameter& parameter : rules.parameters) words += textWords(parameter.name);
+    return words;
+}
+
 void putLimits(schema::Scene::Builder to, const Scene& scene) {
     auto limits = to.getLimits();
     limits.setBodies(scene.limits.bodies);
@@ -119,6 +156,7 @@ std::size_t contentWords(const Scene& scene) {
             words += structWords<schema::Body>() + contentWords(*body);
         }
     }
+    if (scene.rules) words += structWords<schema::Rules>() + contentWords(*scene.rules);
     return words;
 }
 
@@ -267,6 +305,7 @@ void put(schema::Scene::Builder to, const Scene& scene) {
     }
     if (scene.players) put(to.initPlayers(), *scene.players);
     putLimits(to, scene);
+    if (scene.rules) put(to.initRules(), *scene.rules);
 }
 
 Scene readScene(Reading& in, schema::Scene::Reader from) {
@@ -288,6 +327,9 @@ Scene readScene(Reading& in, schema::Scene::Reader from) {
     scene.joints = readJoints(in, from.getJoints(), caps::maxJoints);
     if (from.hasPlayers()) {
         scene.players = in.at("players", [&] { return readPlayers(in, from.getPlayers()); });
+    }
+    if (from.hasRules()) {
+        scene.rules = in.at("rules", [&] { return readRules(in, from.getRules()); });
     }
     const auto limits = from.getLimits();
     scene.limits = {limits.getBodies(), limits.getShapes(), limits.getJoints(),

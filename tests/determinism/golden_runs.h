@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tests/determinism/commands.h"
+#include "tests/determinism/games.h"
 #include "tests/determinism/script.h"
 
 namespace huestep::test {
@@ -71,6 +72,16 @@ inline std::vector<GoldenRun> goldenRuns() {
          {1, 60, 240, 420},
          240,
          playersScript},
+        {"ball:goals=2,length=12,width=8",
+         "rules: kick-offs, kicks, goals, dice; players who join and leave",
+         {1, 90, 240, 420},
+         240,
+         ballScript},
+        {"building:budget=6",
+         "rules: pieces that players put there and that go, dice",
+         {1, 60, 240, 420},
+         240,
+         buildingScript},
     };
 }
 

@@ -413,9 +413,9 @@ TEST(CodecLimits, AnUnknownActionIsRefused) {
     std::vector<std::byte> payload(frame.begin() + headerBytes, frame.end());
     // The discriminant of `action` is at byte 16 of the command, which
     // follows root pointer, root struct (5 words) and the list's tag.
-    payload[8 * 7 + 16] = std::byte{13};
+    payload[8 * 7 + 16] = std::byte{14};
     EXPECT_EQ(reasonOf(decode(MessageType::Frame, payload)),
-              "Frame.commands[0]: unknown action 13");
+              "Frame.commands[0]: unknown action 14");
 }
 
 TEST(CodecLimits, Texts) {

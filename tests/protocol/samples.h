@@ -147,8 +147,11 @@ inline Action randomAction(Draw& draw, std::size_t kind) {
             return SetMotor{draw.word(), draw.coin(), draw.real()};
         case 11:
             return SetVelocity{draw.word(), draw.point(), draw.real()};
-        default:
+        case 12:
             return SetTarget{draw.word(), draw.point(), {draw.real(), draw.real()}};
+        default:
+            return Custom{draw.word(), draw.word(), static_cast<std::int32_t>(draw.word()),
+                          draw.point()};
     }
 }
 inline constexpr std::size_t actionKinds = std::variant_size_v<Action>;
@@ -178,6 +181,7 @@ inline View randomView(Draw& draw) {
     for (std::size_t i = draw.below(6); i > 0; --i) {
         view.joints.push_back({draw.point(), draw.point()});
     }
+    view.score = draw.text(maxScoreText);
     if (bodies == 0 || draw.coin()) return view;
     for (std::size_t i = 0; i < bodies; ++i) view.bodies.push_back(draw.word());
     for (std::size_t i = draw.below(20); i > 0; --i) {
@@ -208,6 +212,7 @@ inline Hello randomHello(Draw& draw) {
     hello.haveHash = draw.bits();
     hello.ticket.resize(draw.coin() ? draw.below(maxTicketBytes + 1) : 0);
     for (std::byte& byte : hello.ticket) byte = static_cast<std::byte>(draw.below(256));
+    for (std::size_t i = draw.below(4); i > 0; --i) hello.rules.push_back(draw.bits());
     return hello;
 }
 
@@ -348,6 +353,7 @@ inline std::vector<Message> sampleMessages() {
                     {{{1.0f, 2.0f}, {1.0f, 0.0f}}, {{-1.0f, 0.5f}, {0.0f, 1.0f}}},
                     {5, 0},
                     {{{0.25f, 0.75f}, 3}, {{0.5f, 0.75f}, 255}},
+                    {},
                     {}};
     return {hello,
             welcome,

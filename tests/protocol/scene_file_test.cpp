@@ -36,6 +36,7 @@ Scene fullScene() {
     scene.substeps = 7;
     scene.method = Method::Sequential;
     scene.need = {0.002f, 0.003f};
+    scene.rules = {.name = "ball", .version = 3, .seed = 9, .parameters = {{"goals", 7.5f}}};
     scene.sleep = false;
     BodyDef ground;
     ground.id = 3;
@@ -297,7 +298,15 @@ TEST(SceneFile, BadDocumentsAreRefusedWithTheirPath) {
          "bodies[0].position.x: stands here twice"},
         {R"({"version": 1, "colour": "red"})",
          "colour: no such field; there are version, name, gravity, stepSeconds, substeps, sleep, "
-         "bodies, joints, players, limits, counters, method, need"},
+         "bodies, joints, players, limits, counters, method, need, rules"},
+        {R"({"version": 1, "rules": {"name": "Ball"}})",
+         "rules.name: must be 1 to 32 of a-z, 0-9, _, -"},
+        {R"({"version": 1, "rules": {"version": 1}})", "rules.name: is missing"},
+        {R"({"version": 1, "rules": {"name": "a", "parameters": [{"name": "b", "value": 1},
+             {"name": "a", "value": 1}]}})",
+         "rules.parameters[1].name: must come after the one before it, letter by letter"},
+        {R"({"version": 1, "rules": {"name": "a", "parameters": [{"name": "", "value": 1}]}})",
+         "rules.parameters[0].name: must be 1 to 32 of a-z, A-Z, 0-9, _, -"},
         {withBody(R"("position": {"x": 1, "y": 2, "z": 3})"),
          "bodies[0].position.z: no such field; there are x, y"},
         {withBody(R"("position": {"x": 1})"), "bodies[0].position.y: is missing"},

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 
+#include "core/scene/catalog.h"
 #include "desk.h"
 #include "protocol/codec.h"
+#include "protocol/fingerprint.h"
 
 namespace huestep::server {
 namespace {
@@ -74,6 +76,30 @@ TEST(Connection, WrongVersionFingerprintOrSessionIsRefusedWithItsReason) {
     EXPECT_EQ(refusal([](auto& hello) { hello.fingerprint.selfTest = 1; }),
               ByeReason::FingerprintMismatch);
     EXPECT_EQ(refusal([](auto& hello) { hello.session = "nowhere"; }), ByeReason::UnknownSession);
+}
+
+TEST(Connection, ABuildWithoutTheRulesOfTheSessionIsRefusedAndToldWhichItLacks) {
+    const auto answer = [](const std::vector<std::uint64_t>& rules) {
+        Desk desk({}, *sceneFromCatalog("ball"));
+        Peer peer(desk);
+        protocol::Hello hello = peer.hello();
+        hello.rules = rules;
+        peer.say(hello);
+        desk.tick(3);
+        peer.read();
+        const auto* bye = peer.last<protocol::Bye>();
+        return bye == nullptr ? std::string("welcome") : bye->text;
+    };
+    const std::uint64_t building = protocol::rulesMark("building", 1);
+    const std::uint64_t older = protocol::rulesMark("ball", 0);
+    const std::vector<std::vector<std::uint64_t>> lacking{{}, {building}, {building, older}};
+    for (const std::vector<std::uint64_t>& rules : lacking) {
+        const std::string text = answer(rules);
+        EXPECT_NE(text.find("by the rules ball 1"), std::string::npos) << text;
+        EXPECT_NE(text.find("--web"), std::string::npos) << text;
+    }
+    EXPECT_EQ(answer({building, protocol::rulesMark("ball", 1)}), "welcome");
+    EXPECT_EQ(answer(protocol::builtInRulesMarks()), "welcome");
 }
 
 TEST(Connection, ASpectatorOfAnotherBuildIsSentToThePage) {

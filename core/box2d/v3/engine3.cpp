@@ -95,6 +95,7 @@ JointId idOf(b2JointId joint) {
 }
 
 Status Box2d3Engine::build(const Scene& scene) {
+    if (scene.rules) m_notes.add("rules", "box2d3 plays by none");
     const Result<Added> added = add(scene.bodies, scene.joints, "");
     if (!added) return added.error();
     m_bodies = ById<b2BodyId>(bodyIdsOf(scene), added->bodies, scene.counters.nextBody);

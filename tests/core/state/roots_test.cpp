@@ -64,6 +64,7 @@ TEST(Roots, TheFullRootChangesWithEveryBitOfEveryFieldTheMotionRootWithMotionsAn
     std::size_t arrays = 0;
     forEachArray(good, [&](std::string_view array, const auto& records) {
         using Record = typename std::remove_cvref_t<decltype(records)>::value_type;
+        if (isOfRules<Record>) return;  // rules_test.cpp
         ASSERT_FALSE(records.empty()) << "the scene must have a " << array;
         ++arrays;
         for (const Field& field : fieldsOf<Record>) {

@@ -434,7 +434,7 @@ TEST(Commands, OnABodyRemovedInTheSameTickFindNone) {
 
 TEST(Commands, HaveAReasonInWordsForEveryNumber) {
     std::vector<std::string_view> seen;
-    for (std::uint16_t i = 0; i <= static_cast<std::uint16_t>(Rejection::TooCrowded); ++i) {
+    for (std::uint16_t i = 0; i <= static_cast<std::uint16_t>(Rejection::AgainstRules); ++i) {
         const std::string_view words = describe(static_cast<Rejection>(i));
         EXPECT_NE(words, "unknown reason");
         EXPECT_EQ(std::count(seen.begin(), seen.end(), words), 0) << words;
