@@ -34,6 +34,9 @@ std::unique_ptr<Bot> makeIdleBot();
 /// them again, within the scene's budget. The same seed and worlds give the same actions.
 std::unique_ptr<Bot> makeWanderBot(std::uint64_t seed);
 
+/// Plays the game whose rules the world has, if it knows them (core/games), else wanders.
+std::unique_ptr<Bot> makeGameBot(std::uint64_t seed);
+
 /// Acts by a script; see `parseScript`.
 struct ScriptLine {
     std::uint64_t tick = 0;  ///< ticks since this client began to play
@@ -57,6 +60,7 @@ std::unique_ptr<Bot> makeScriptBot(std::vector<ScriptLine> lines);
 ///     TICK spawn box HALFWIDTH HALFHEIGHT X Y
 ///     TICK remove BODY
 ///     TICK motor JOINT on|off SPEED
+///     TICK custom KIND [X Y [NUMBER [ID]]]     what the world's rules understand
 ///
 /// The sentence of a failure begins with `NAME:LINE: `.
 Result<std::vector<ScriptLine>> parseScript(std::string_view text, const std::string& name);

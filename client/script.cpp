@@ -112,6 +112,15 @@ Action readMotor(Words& words) {
     return motor;
 }
 
+Action readCustom(Words& words) {
+    Custom custom;
+    custom.kind = words.number<std::uint32_t>("the kind");
+    if (words.left() > 0) custom.vector = words.vector("the vector");
+    if (words.left() > 0) custom.number = words.number<std::int32_t>("the number");
+    if (words.left() > 0) custom.id = words.number<std::uint32_t>("the id");
+    return custom;
+}
+
 using Reader = Action (*)(Words&, ScriptLine&);
 
 const std::map<std::string_view, Reader> readers{
@@ -140,6 +149,7 @@ const std::map<std::string_view, Reader> readers{
     {"remove",
      [](Words& words, ScriptLine& line) -> Action { return RemoveBody{readBody(words, line)}; }},
     {"motor", [](Words& words, ScriptLine&) -> Action { return readMotor(words); }},
+    {"custom", [](Words& words, ScriptLine&) -> Action { return readCustom(words); }},
 };
 
 Result<ScriptLine> readLine(Words& words, std::uint64_t earliest) {
@@ -153,8 +163,9 @@ Result<ScriptLine> readLine(Words& words, std::uint64_t earliest) {
     }
     const auto reader = readers.find(name);
     if (reader == readers.end()) {
-        return Error{"there is no action '" + name +
-                     "'; there are force, grab, impulse, motor, move, release, remove and spawn"};
+        return Error{
+            "there is no action '" + name +
+            "'; there are custom, force, grab, impulse, motor, move, release, remove and spawn"};
     }
     line.action = reader->second(words, line);
     if (!words.problem().empty()) return Error{words.problem()};

@@ -39,14 +39,15 @@ constexpr std::uint32_t guessedTicks = 6;
 
 Result<std::unique_ptr<client::Bot>> makeBot(const std::string& text) {
     if (text == "idle") return client::makeIdleBot();
-    if (text == "wander") {
+    if (text == "wander" || text == "play") {
         const std::uint64_t seed = std::random_device{}();
-        std::fprintf(stderr, "wander: seed %llu\n", static_cast<unsigned long long>(seed));
-        return client::makeWanderBot(seed);
+        std::fprintf(stderr, "%s: seed %llu\n", text.c_str(),
+                     static_cast<unsigned long long>(seed));
+        return text == "play" ? client::makeGameBot(seed) : client::makeWanderBot(seed);
     }
     const std::string prefix = "script:";
     if (text.starts_with(prefix)) return client::readScript(text.substr(prefix.size()));
-    return Error{"--bot: '" + text + "' is none of wander, idle and script:FILE"};
+    return Error{"--bot: '" + text + "' is none of wander, play, idle and script:FILE"};
 }
 
 Result<std::optional<client::PredictionRules>> rulesOf(const Options& options) {
@@ -159,6 +160,7 @@ Json asJson(const Options& options, const client::Statistics& s, double seconds)
                   {{"in", perSecond(s.bytesIn, seconds)}, {"out", perSecond(s.bytesOut, seconds)}}},
                  {"latency_s", {{"median", s.latencyMedian}, {"p99", s.latencyP99}}}};
     if (s.prediction) json["prediction"] = asJson(*s.prediction);
+    if (!s.score.empty()) json["score"] = s.score;
     if (s.lastDesync)
         json["last_desync"] = {{"tick", s.lastDesync->tick},
                                {"body", s.lastDesync->body},
@@ -171,6 +173,7 @@ Json asJson(const Options& options, const client::Statistics& s, double seconds)
 void printText(const client::Statistics& s, double seconds) {
     const auto n = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
     std::printf("player       %u, tick %llu, hash %s\n", s.player, n(s.tick), hex(s.root).c_str());
+    if (!s.score.empty()) std::printf("score        %s\n", s.score.c_str());
     std::printf("latency      median %s ms, p99 %s ms\n", number(1e3 * s.latencyMedian).c_str(),
                 number(1e3 * s.latencyP99).c_str());
     std::printf("corrections  %llu; snapshots %llu, resumes %llu\n", n(s.corrections),
@@ -245,7 +248,9 @@ void addJoin(Menu& menu) {
                              [o] { return join(*o); });
     sub->add_option("HOST:PORT", o->address, "Where the server listens")->required();
     sub->add_option("--session", o->session, "Which session to play")->required();
-    sub->add_option("--bot", o->bot, "wander, idle or script:FILE (default: wander)");
+    sub->add_option(
+        "--bot", o->bot,
+        "wander, play (the game of the session's rules), idle or script:FILE (default: wander)");
     sub->add_option("--ticks", o->ticks, "Leave after so many ticks (default: at Ctrl-C)")
         ->transform(wholeNumber(1, 1'000'000'000));
     sub->add_flag("--predict", o->predict,

@@ -203,6 +203,10 @@ Command NoiseIds::renamed(Command command) const {
 }
 
 Result<NoisePair> withNoise(const Scene& scene) {
+    if (scene.rules)
+        return Error{
+            "--reorder: the scene has rules, which may know bodies by their ids, and with noise "
+            "these are others"};
     if (highestId(scene) > (caps::maxId - 2 * maxNoise) / 2)
         return Error{"--reorder: the scene's ids are too high to leave room for noise between"};
     const std::uint32_t count = noiseCount(scene);

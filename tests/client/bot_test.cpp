@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "core/games/ball.h"
+#include "core/games/building.h"
+#include "core/scene/catalog.h"
 #include "tests/play_scene.h"
 
 namespace huestep::client {
@@ -170,6 +174,63 @@ TEST(Script, AFileIsReadWhole) {
     std::filesystem::remove(path);
     ASSERT_FALSE(bot.ok());
     EXPECT_EQ(bot.error().message.rfind(path + ":2: ", 0), 0u) << bot.error().message;
+}
+
+/// Several bots in one world of the catalogue.
+void playTogether(World& world, std::vector<std::unique_ptr<Bot>>& bots, int ticks,
+                  std::vector<CommandOutcome>& outcomes) {
+    std::vector<Command> commands;
+    for (std::size_t i = 0; i < bots.size(); ++i) {
+        commands.push_back({0, world.tick() + i + 1, AddPlayer{static_cast<PlayerId>(i + 1)}});
+    }
+    for (int tick = 0; tick < ticks; ++tick) {
+        world.step(commands);
+        outcomes.insert(outcomes.end(), world.events().commands.begin(),
+                        world.events().commands.end());
+        commands.clear();
+        for (const PlayerRecord& player : world.players()) {
+            if (player.id == 0) continue;
+            std::uint64_t sequence = player.lastSequence;
+            for (Action& action : bots[player.id - 1]->act(
+                     {world, player.id, player.body, static_cast<std::uint64_t>(tick)})) {
+                commands.push_back({player.id, ++sequence, std::move(action)});
+            }
+        }
+    }
+}
+
+std::vector<std::unique_ptr<Bot>> gameBots(std::size_t count) {
+    std::vector<std::unique_ptr<Bot>> bots;
+    for (std::size_t i = 0; i < count; ++i) bots.push_back(makeGameBot(i + 1));
+    return bots;
+}
+
+TEST(GameBot, PlaysTheBallGameSoThatGoalsAreShot) {
+    World world = *World::create(*sceneFromCatalog("ball:goals=20"));
+    std::vector<std::unique_ptr<Bot>> bots = gameBots(4);
+    std::vector<CommandOutcome> outcomes;
+    playTogether(world, bots, 3'600, outcomes);
+    const auto state = rulesStateOf<games::BallState>(world.rulesState());
+    EXPECT_GT(state.goals[0] + state.goals[1], 0u) << world.score();
+    std::size_t refused = 0;
+    for (const CommandOutcome& outcome : outcomes) refused += outcome.reason != Rejection::None;
+    // A kick-off may come between what a bot sees and what it does; a fair player is refused then.
+    EXPECT_LT(20 * refused, outcomes.size());
+    EXPECT_GT(outcomes.size(), 5'000u);
+}
+
+TEST(GameBot, BuildsWithinTheBudgetAndWandersWhereThereAreNoRules) {
+    World world = *World::create(*sceneFromCatalog("building:budget=5"));
+    std::vector<std::unique_ptr<Bot>> bots = gameBots(3);
+    std::vector<CommandOutcome> outcomes;
+    playTogether(world, bots, 1'200, outcomes);
+    const auto state = rulesStateOf<games::BuildingState>(world.rulesState());
+    EXPECT_GT(state.placed, 15u);
+    EXPECT_EQ(*std::max_element(state.pieces.begin(), state.pieces.end()), 5u);
+    Alone alone;
+    const std::unique_ptr<Bot> bot = makeGameBot(1);
+    alone.play(*bot, 600);
+    EXPECT_GT(countOf<ApplyImpulse>(alone.actions), 50u);
 }
 
 }  // namespace
