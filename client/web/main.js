@@ -93,6 +93,8 @@ const huestep = {
   snapshots: 0,
   connections: 0,
   difference: '',
+  /** How the game stands, where one is played. */
+  score: '',
   /** What moves in the page's own world, where it lies in the core's memory. */
   motions: () => peer?.motions(),
   /** Where the player's own body is, in pixels of the canvas; null if it has none. */
@@ -192,6 +194,14 @@ function showAgreement() {
   shownAs.dataset.agree = String(mismatches === 0);
 }
 
+/** @param {string} score */
+function showScore(score) {
+  if (score === huestep.score) return;
+  huestep.score = score;
+  byId('score').hidden = score === '';
+  byId('score').textContent = score;
+}
+
 /** @param {string} difference */
 function showDifference(difference) {
   huestep.difference = difference;
@@ -256,6 +266,7 @@ function showNumbers(view) {
   shown.bodies.textContent = String(view.bodies);
   shown.awake.textContent = String(awake);
   shown.contacts.textContent = String(view.contacts.count);
+  showScore(view.score);
   if (peer) showAgreement();
   const now = performance.now();
   if (now - legendAt < refreshMs) return;

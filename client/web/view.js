@@ -17,7 +17,7 @@
  *   data bytes   0 tick u64   8 root u64   16 players u32   20 definitions u32
  *   pointers     0 poses f32[4n]   1 flags u8[n]   2 contacts {x f32, y f32, colour u8}[]
  *                3 bodies u32[n]   4 shapes {body u32, radius f32, kind u16, vertexCount u8}[]
- *                5 vertices f32[]   6 joints f32[4m]
+ *                5 vertices f32[]   6 joints f32[4m]   7 score, UTF-8 with a zero behind it
  *
  * Little-endian, as the bytes are and every browser is. Every pointer is checked against the
  * segment before anything is read through it, and every number that indexes before it is used.
@@ -69,6 +69,7 @@ function need(condition, sentence) {
  *   bit 3 a player's
  * @property {Contacts} contacts
  * @property {Float32Array} joints x, y, x, y: the ends of each, in the world
+ * @property {string} score how the game stands; empty where none is played
  * @property {Shapes | null} shapes only when the definitions changed
  */
 
@@ -199,6 +200,7 @@ export function readFrame(buffer) {
   const flags = segment.list(root, 1, oneByte, 'flags');
   const contacts = segment.list(root, 2, composite, 'contacts');
   const joints = segment.list(root, 6, fourBytes, 'joints');
+  const score = segment.list(root, 7, oneByte, 'score');
   need(poses.count === 4 * flags.count, 'flags: not one for each pose');
   need(joints.count % 4 === 0, 'joints: not four numbers each');
   return {
@@ -216,6 +218,9 @@ export function readFrame(buffer) {
       bytes: new Uint8Array(buffer, contacts.byte, 8 * contacts.words * contacts.count),
     },
     joints: segment.floats(joints),
+    score: new TextDecoder().decode(
+      new Uint8Array(buffer, score.byte, Math.max(score.count - 1, 0)),
+    ),
     shapes: readShapes(segment, root, flags.count),
   };
 }

@@ -61,6 +61,7 @@ function plain(view) {
     poses: [...view.poses],
     flags: [...view.flags],
     joints: [...view.joints],
+    score: view.score,
     contacts: Array.from({ length: view.contacts.count }, (_, i) => ({
       x: view.contacts.floats[view.contacts.stride * i],
       y: view.contacts.floats[view.contacts.stride * i + 1],
@@ -86,6 +87,7 @@ test("it reads what Cap'n Proto reads", () => {
       poses: [],
       flags: [],
       joints: [],
+      score: '',
       contacts: [],
       shapes: [],
       vertices: [],
