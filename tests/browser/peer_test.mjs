@@ -3,13 +3,14 @@
  * that native bots play on.
  */
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { ask, eventually, withServer } from './server.mjs';
+import { ask, eventually, huestep, withServer } from './server.mjs';
 
 const root = process.env.HUESTEP_SOURCE ?? fileURLToPath(new URL('../..', import.meta.url));
 const modules = process.env.HUESTEP_WASM ?? 'build/release/wasm';
@@ -34,7 +35,7 @@ const compiled = (name) => new WebAssembly.Module(readFileSync(join(modules, nam
 const forms = { 'with SIMD': compiled('huestep_simd.wasm'), 'without SIMD': compiled('huestep.wasm') };
 
 /** A peer on a TCP connection of its own, and what it told. */
-function enterSession(server, module, session, role = 'spectator') {
+function enterSession(server, module, session, role = 'spectator', ticket = '') {
   const core = new Core(new WebAssembly.Instance(module));
   const told = { history: [], views: 0, view: null, differences: [], failed: [], numbers: null };
   const peer = new Peer(core, session, role, {
@@ -51,7 +52,7 @@ function enterSession(server, module, session, role = 'spectator') {
     differed: (sentence) => told.differences.push(sentence),
     failed: (sentence) => told.failed.push(sentence),
     stopped: (sentence) => told.failed.push(`the core stopped: ${sentence}`),
-  });
+  }, ticket);
   const [host, port] = server.address.split(':');
   const line = {
     open() {
@@ -75,7 +76,7 @@ function enterSession(server, module, session, role = 'spectator') {
   return { peer, told, line };
 }
 
-const withPeers = (sessions, body) =>
+const withPeers = (sessions, body, where = {}) =>
   withServer(sessions, async (server) => {
     const lines = [];
     try {
@@ -87,7 +88,7 @@ const withPeers = (sessions, body) =>
     } finally {
       for (const line of lines) if (line.socket) line.close();
     }
-  });
+  }, where);
 
 for (const [form, module] of Object.entries(forms)) {
   test(`${form}: a spectator that comes late steps what bots play, every hash the server's`, () =>
@@ -174,6 +175,40 @@ test('a player of the page drags a body, and keeps its seat over a lost connecti
     assert.equal(told.numbers.mismatches, 0);
     assert.deepEqual(told.failed, []);
   }));
+
+test('a peer shows its ticket where the server asks for one, once', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'huestep-ticket-'));
+  const run = (...words) => {
+    const { status, stdout, stderr } = spawnSync(huestep, words, { encoding: 'utf8' });
+    assert.equal(status, 0, stderr);
+    return stdout.trim();
+  };
+  try {
+    const club = join(folder, 'club');
+    run('ticket', 'key', club);
+    const body = async (server, enter) => {
+      const issuer = `${club}.issuer.key`;
+      const ticket = run('ticket', 'issue', '--key', issuer, '--session', 'play', '--player', 'ann');
+      const module = forms['with SIMD'];
+      const { told } = enter(module, 'play', 'player', ticket);
+      await eventually('20 ticks', () => told.history.length > 20);
+      assert.deepEqual(told.failed, []);
+      assert.ok(told.numbers.player > 0);
+      for (const [shown, why] of [
+        [ticket, /used already/],
+        ['', /asks for a ticket/],
+        ['no ticket!', /no issuer/],
+      ]) {
+        const other = enter(module, 'play', 'player', shown).told;
+        await eventually('a refusal', () => other.failed.length > 0);
+        assert.match(other.failed[0], why);
+      }
+    };
+    await withPeers({ play: 'sandbox' }, body, { door: ['--tickets', `${club}.host.key`] });
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+});
 
 test('bytes that are no messages end the connection with a sentence', () =>
   withPeers({ pile: 'pyramid:base=3' }, async (server, enter) => {

@@ -51,7 +51,8 @@ class Program {
 /**
  * A server with a page.
  * @param {Record<string, string>} sessions name to scene
- * @param {{data?: string, web?: string}} where to go on from an earlier server's
+ * @param {{data?: string, web?: string, door?: string[]}} where to go on from an earlier server's,
+ *   and who may come in: anyone, unless said
  */
 export async function startServer(sessions, where = {}) {
   const data = where.data ?? mkdtempSync(join(tmpdir(), 'huestep-browser-'));
@@ -67,7 +68,7 @@ export async function startServer(sessions, where = {}) {
     where.web ?? '127.0.0.1:0',
     '--data',
     data,
-    '--open',
+    ...(where.door ?? ['--open']),
     ...named,
   );
   const bots = [];
@@ -106,8 +107,8 @@ export async function startServer(sessions, where = {}) {
 }
 
 /** A server and what is done with it; the server ends whatever happens, and must end well. */
-export async function withServer(sessions, body) {
-  const server = await startServer(sessions);
+export async function withServer(sessions, body, where = {}) {
+  const server = await startServer(sessions, where);
   try {
     await body(server);
     assert.equal(await server.stop(), 0, server.log());

@@ -21,6 +21,9 @@ constexpr int ticks = 600;  // 10 s
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool heapIsCounted = false;
+#elif defined(__has_feature)
+constexpr bool heapIsCounted =
+    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
 #else
 constexpr bool heapIsCounted = true;
 #endif
