@@ -58,10 +58,16 @@ HUESTEP_INLINE void storeLanes(float* to, const LaneF<W>& v) {
     *reinterpret_cast<Unaligned*>(to) = v;
 }
 
-/// All lanes the same. `x − 0` is x for every x, −0 included.
+/// All lanes the same, as integers: of `x − LaneF<16>{}` g++ 12 makes sixteen masked moves one
+/// after another where x lies in memory.
 template <int W>
 HUESTEP_INLINE LaneF<W> splat(float x) {
-    return x - LaneF<W>{};
+    if constexpr (W == 1) {
+        return x;
+    } else {
+        typedef typename Lanes<W>::Mask Bits;
+        return __builtin_bit_cast(LaneF<W>, __builtin_bit_cast(std::int32_t, x) - Bits{});
+    }
 }
 
 /// A mask of numbers that are 0 or not, W of them; of more than one lane they are 0 or −1.

@@ -48,6 +48,7 @@ struct alignas(64) ContactPointRows : ContactPointFields<LaneRow> {
     LaneRow separation;        ///< m, at the start of the step, less n·(rB − rA)
     LaneRow maxNormalImpulse;  ///< over the step: whether the point ever pushed; where it `mayHit`
     LaneRow approach;          ///< m/s, relative normal velocity at the start of the step
+    LaneRow relaxedAt;         ///< m, the separation that the last `relax` found
 };
 
 struct alignas(64) ContactBlock : ContactFields<LaneRow> {
@@ -124,6 +125,9 @@ struct ContactPass {
     float inverseH = 0;   ///< 1/s
     float pushSpeed = 0;  ///< m/s, most that overlap is pushed apart with
     float slop = 0;       ///< m, of overlap that `project` and `correct` let be
+    /// Of `solve`: whether nothing has moved since the last `relax` of all rows. Then separations
+    /// are those that it found, and bodies' moves need not be fetched: the same bits for less.
+    bool relaxedBefore = false;
     ContactFeatures features;
 };
 

@@ -125,14 +125,15 @@ HUESTEP_INLINE void warmStartAgainLanes(SolverBody* bodies, ContactBlock& block,
 
 /// The normal rows of both points. A point still apart may close its gap within the substep and
 /// no faster (bias s/h); one that overlaps is pushed out softly, or not at all in relax.
-template <int W, bool Bias>
-HUESTEP_INLINE void solveNormals(Pair<W>& pair, const DeltaLanes<W>& a, const DeltaLanes<W>& b,
-                                 ContactBlock& block, int lane, const ContactPass& pass) {
+/// `separationOf(p, r)`: how far a point is open.
+template <int W, bool Bias, class SeparationOf>
+HUESTEP_INLINE void solveNormals(Pair<W>& pair, ContactBlock& block, int lane,
+                                 const ContactPass& pass, SeparationOf&& separationOf) {
     const LaneF<W> zero = splat<W>(0.0f);
     const LaneF<W> one = splat<W>(1.0f);
     for (ContactPointRows& p : block.points) {
         const Anchors<W> r = anchorsOf<W>(p, lane);
-        const LaneF<W> s = separationNow<W>(pair, r, a, b, loadLanes<W>(p.separation + lane));
+        const LaneF<W> s = separationOf(p, r);
         const auto apart = s > zero;
         LaneF<W> x, y;
         relativeVelocity<W>(pair, r, x, y);
@@ -167,19 +168,43 @@ template <int W>
 HUESTEP_INLINE void solveLanes(SolverBody* bodies, ContactBlock& block, int lane,
                                const ContactPass& pass) {
     Pair<W> pair(bodies, block, lane);
+    if (pass.relaxedBefore) {
+        const auto found = [&](const ContactPointRows& p, const Anchors<W>&)
+            __attribute__((always_inline)) {
+            return loadLanes<W>(p.relaxedAt + lane);
+        };
+        solveNormals<W, true>(pair, block, lane, pass, found);
+    } else {
+        const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
+        const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
+        const auto now = [&](const ContactPointRows& p, const Anchors<W>& r)
+            __attribute__((always_inline)) {
+            return separationNow<W>(pair, r, a, b, loadLanes<W>(p.separation + lane));
+        };
+        solveNormals<W, true>(pair, block, lane, pass, now);
+    }
+    pair.store(bodies, block, lane);
+}
+
+/// The normal rows without bias; keeps the separations, which are the next substep's at its start.
+template <int W>
+HUESTEP_INLINE void relaxNormals(const SolverBody* bodies, Pair<W>& pair, ContactBlock& block,
+                                 int lane, const ContactPass& pass) {
     const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
     const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
-    solveNormals<W, true>(pair, a, b, block, lane, pass);
-    pair.store(bodies, block, lane);
+    const auto now = [&](ContactPointRows & p, const Anchors<W>& r) __attribute__((always_inline)) {
+        const LaneF<W> s = separationNow<W>(pair, r, a, b, loadLanes<W>(p.separation + lane));
+        storeLanes<W>(p.relaxedAt + lane, s);
+        return s;
+    };
+    solveNormals<W, false>(pair, block, lane, pass, now);
 }
 
 template <int W>
 HUESTEP_INLINE void relaxLanes(SolverBody* bodies, ContactBlock& block, int lane,
                                const ContactPass& pass) {
     Pair<W> pair(bodies, block, lane);
-    const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
-    const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
-    solveNormals<W, false>(pair, a, b, block, lane, pass);
+    relaxNormals<W>(bodies, pair, block, lane, pass);
     if (pass.features.friction) solveFriction<W>(pair, block, lane, pass);
     if (pass.features.rolling) solveRolling<W>(pair, block, lane);
     pair.store(bodies, block, lane);
@@ -203,9 +228,7 @@ HUESTEP_INLINE void relaxColdLanes(SolverBody* bodies, ContactBlock& block, int 
                            block.rollingImpulse};
     LaneF<W> old[std::size(rows)];
     for (std::size_t i = 0; i < std::size(rows); ++i) old[i] = loadLanes<W>(rows[i] + lane);
-    const DeltaLanes<W> a = gatherDeltas<W>(bodies, block.bodyA + lane);
-    const DeltaLanes<W> b = gatherDeltas<W>(bodies, block.bodyB + lane);
-    solveNormals<W, false>(pair, a, b, block, lane, pass);
+    relaxNormals<W>(bodies, pair, block, lane, pass);
     if (pass.features.friction) solveFriction<W>(pair, block, lane, pass);
     if (pass.features.rolling) solveRolling<W>(pair, block, lane);
     for (std::size_t i = 0; i < std::size(rows); ++i) {

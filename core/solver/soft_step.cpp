@@ -129,6 +129,8 @@ void SoftStep::run() {
     const bool sweeps = m_task.trees == nullptr || m_task.trees->leavesWork();
     for (std::uint32_t substep = 0; substep < m_task.substeps; ++substep) {
         const bool first = substep == 0;
+        // Bodies move after the solving sweeps and not before.
+        m_biased.moving.relaxedBefore = m_biased.fixed.relaxedBefore = !first;
         overBodies(m_task, m_team, [&](std::uint32_t place) { start(place, first); });
         if (!sweeps) {
             // Trees start cold.

@@ -17,7 +17,8 @@ constexpr std::uint32_t jointsAsLanes = 8;  // a joint one by one takes as long 
 /// A hub's contacts, bucket by bucket: each lane works on a copy of the hub, and the mean of the
 /// copies is what becomes of the hub. Lanes that act share its mass; those that do not would make
 /// it the heavier. The sum has a fixed shape of eight lanes, whatever the kernel's width.
-void ColourSweeper::sweepHub(const ColourRun& run, ContactKernel kernel, const ContactPass& pass) {
+void ColourSweeper::sweepHub(const ColourRun& run, ContactKernel kernel, ContactPass pass) {
+    pass.relaxedBefore = false;  // blocks in which nothing acts are left out, when relaxing too
     const ContactKernels& kernels = m_task.contacts;
     Rows& rows = m_task.rows;
     std::vector<SolverBody>& bodies = rows.bodies;

@@ -64,7 +64,7 @@ class ColourSweeper final : public Sweeper {
  private:
     void sweepColour(const ColourRun& run, const Sweep& sweep, const SweepPass& pass,
                      const Team& team);
-    void sweepHub(const ColourRun& run, ContactKernel kernel, const ContactPass& pass);
+    void sweepHub(const ColourRun& run, ContactKernel kernel, ContactPass pass);
 
     const BatchTask& m_task;
     Team m_team;
