@@ -31,7 +31,7 @@ std::string describe(const Command& command) {
     static constexpr const char* names[] = {
         "AddPlayer", "RemovePlayer", "ApplyImpulse", "ApplyForce", "Grab",
         "MoveGrab",  "Release",      "Spawn",        "RemoveBody", "RemoveJoint",
-        "SetMotor",  "SetVelocity",  "SetTarget"};
+        "SetMotor",  "SetVelocity",  "SetTarget",    "Custom"};
     static_assert(std::size(names) == std::variant_size_v<huestep::Action>);
     return std::string(names[command.action.index()]) + " of author " +
            std::to_string(command.author) + ", sequence " + std::to_string(command.sequence);
