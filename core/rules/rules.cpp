@@ -1,8 +1,22 @@
 #include "core/rules/rules.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 
 namespace huestep {
+
+namespace {
+
+/// The shortest digits that read back as the same number. `std::to_string` would bring the C
+/// library's formatted output with it, and a module for pages that imports files.
+std::string text(float value) {
+    std::array<char, 64> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    return {digits.data(), end};
+}
+
+}  // namespace
 
 float RulesParameters::take(std::string_view name, float standard, float low, float high) {
     m_known.push_back(name);
@@ -11,8 +25,8 @@ float RulesParameters::take(std::string_view name, float standard, float low, fl
     if (given == m_given.end()) return standard;
     if (given->value >= low && given->value <= high) return canonicalZero(given->value);
     if (m_problem.empty()) {
-        m_problem = "parameter " + std::string(name) + ": must be from " + std::to_string(low) +
-                    " to " + std::to_string(high) + ", is " + std::to_string(given->value);
+        m_problem = "parameter " + std::string(name) + ": must be from " + text(low) + " to " +
+                    text(high) + ", is " + text(given->value);
     }
     return standard;
 }
@@ -23,8 +37,8 @@ std::uint32_t RulesParameters::takeWhole(std::string_view name, std::uint32_t st
         take(name, static_cast<float>(standard), static_cast<float>(low), static_cast<float>(high));
     const auto whole = static_cast<std::uint32_t>(value);
     if (static_cast<float>(whole) != value && m_problem.empty()) {
-        m_problem = "parameter " + std::string(name) + ": must be a whole number, is " +
-                    std::to_string(value);
+        m_problem =
+            "parameter " + std::string(name) + ": must be a whole number, is " + text(value);
     }
     return whole;
 }
