@@ -44,7 +44,8 @@ std::string nearest(const std::string& word, const std::vector<std::string>& nam
     std::size_t least = nearEnough + 1;
     for (const std::string& name : names) {
         const std::size_t letters = distance(word, name);
-        if (letters >= least || letters >= name.size()) continue;
+        // Of short names half would be another word.
+        if (letters >= least || 2 * letters > name.size()) continue;
         least = letters;
         best = name;
     }

@@ -14,6 +14,12 @@ std::size_t bodiesOf(const CatalogEntry& entry) {
     return scene ? scene->bodies.size() : 0;
 }
 
+/// Those that the scene is played by; empty: none.
+std::string rulesOf(const CatalogEntry& entry) {
+    const Result<Scene> scene = sceneFromCatalog(entry.name);
+    return scene && scene->rules ? scene->rules->name : std::string();
+}
+
 Json asJson(std::span<const SceneParameter> parameters) {
     Json json = Json::array();
     for (const SceneParameter& p : parameters)
@@ -31,6 +37,7 @@ Json asJson(const CatalogEntry& entry) {
             {"bodies", bodiesOf(entry)},
             {"ticks", entry.ticks},
             {"scripted", entry.script != nullptr},
+            {"rules", rulesOf(entry)},
             {"parameters", asJson(std::span(entry.parameters))}};
 }
 
@@ -49,15 +56,16 @@ Answer showScenes(bool json) {
                             number(p.high), std::string(p.meaning)});
     };
     for (const CatalogEntry& entry : sceneCatalog()) {
-        table.add({std::string(entry.name), std::to_string(bodiesOf(entry)),
-                   std::to_string(entry.ticks), entry.script != nullptr ? "scripted" : "",
-                   std::string(entry.purpose)});
+        table.add(
+            {std::string(entry.name), std::to_string(bodiesOf(entry)), std::to_string(entry.ticks),
+             entry.script != nullptr ? "scripted" : rulesOf(entry), std::string(entry.purpose)});
         addParameters(std::string(entry.name), entry.parameters);
     }
     addParameters("every scene", commonParameters());
     table.print();
     std::printf(
-        "scripted: the host moves, spawns and removes bodies as a function of the tick\n\n");
+        "scripted: the host moves, spawns and removes bodies as a function of the tick; a name: so "
+        "do the rules of that game\n\n");
     parameters.print();
     return Exit::Done;
 }

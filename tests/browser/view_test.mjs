@@ -141,6 +141,7 @@ test("it reads what Cap'n Proto writes, joints and shapes and all", () => {
       shapes,
       vertices: list(2 * shapes.reduce((sum, shape) => sum + shape.vertexCount, 0), real),
       joints: list(4 * random(7), real),
+      score: random(2) ? `red ${random(9)} : ${random(9)} blue` : '',
     };
     const read = plain(readFrame(bufferOf(encoded(view))));
     delete view.bodies;

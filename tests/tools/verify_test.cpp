@@ -102,8 +102,11 @@ TEST(Verify, FindsEverySceneOfTheCatalogueEqualInEveryOrderAndAfterNoise) {
         const std::string name = scene["name"];
         const auto small = smaller.find(name);
         const std::string text = small == smaller.end() ? name : small->second;
-        const Json document = documentOf(
-            {"verify", text, "--ticks", "12", "--threads", "2", "--simd", "scalar", "--reorder"});
+        std::vector<std::string> words = {"verify",    text, "--ticks", "12",
+                                          "--threads", "2",  "--simd",  "scalar"};
+        // Rules may know bodies by their ids, which noise changes: a sentence refuses that.
+        if (scene["rules"] == "") words.emplace_back("--reorder");
+        const Json document = documentOf(words);
         EXPECT_EQ(document["equal"], true) << text << ": " << document.value("difference", "");
     }
 }
