@@ -310,7 +310,7 @@ void Connection::on(const protocol::Ping& ping, Instant now) {
 }
 
 void Connection::on(const protocol::Bye& bye, Instant now) {
-    line("left").with("text", bye.text).to(m_context.log);
+    if (mayNote(now)) line("left").with("text", bye.text).to(m_context.log);
     leaveSeat(bye.reason == ByeReason::Done, now);
     m_phase = Phase::Ending;
     m_outbox.clear();

@@ -96,11 +96,11 @@ bool Hub::makeRoom(const std::string& visitor, Instant now) {
     for (const auto& [id, whose] : m_halfOpen) ++shares[whose];
     if (!isShared(visitor) && shares[visitor] >= m_context.limits.halfOpenPerAddress) return false;
     if (m_halfOpen.size() < m_context.limits.halfOpen) return true;
-    const auto most =
-        std::max_element(shares.begin(), shares.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    std::uint32_t most = 0;
+    for (const auto& [whose, share] : shares) most = std::max(most, share);
+    // By age and not by name among those who have equally many.
     const auto oldest = std::find_if(m_halfOpen.begin(), m_halfOpen.end(),
-                                     [&](const auto& each) { return each.second == most->first; });
+                                     [&](const auto& each) { return shares[each.second] == most; });
     const ConnectionId id = oldest->first;
     m_halfOpen.erase(oldest);
     m_connections.at(id)->displace(now);
