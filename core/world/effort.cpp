@@ -21,6 +21,10 @@ constexpr float unrestSpeed = 0.5f;
 // Slower than this nothing hits anything, and contacts may be stiff. They stay so until something
 // does, however fast all move together.
 constexpr float gentleSpeed = 1.0f;
+// In tolerances, of a large island: what is pressed together by more would heave if its contacts
+// were stiffer. A pyramid of 5,050 boxes that is being set up is within it, a pile that has settled
+// softly is far beyond.
+constexpr float deepPile = 10.0f;
 
 RowStrain atMostOne(const RowStrain& strain) {
     return {minOf(strain.contacts, 1.0f), minOf(strain.swept, 1.0f), minOf(strain.direct, 1.0f)};
@@ -198,11 +202,11 @@ EffortRange BatchEffort::rangeOf(std::uint32_t island, const IslandEffort& now) 
 }
 
 /// Whether contacts that were soft may be stiffer from now on. In an island too large for more
-/// substeps that also takes that they are not pressed together by more than they may: a pile that
-/// has settled softly would heave, fall back, be hit and soft again, and so on for good.
+/// substeps that also takes that they are not pressed together by much more than they may: a pile
+/// that has settled softly would heave, fall back, be hit and soft again, and so on for good.
 bool BatchEffort::mayStiffen(const IslandEffort& now, std::uint8_t most) const {
     if (!(now.fastest < gentleSpeed)) return false;
-    return most > standardEffort || !(now.strain.contacts > 1.0f);
+    return most > standardEffort || !(now.strain.contacts > deepPile);
 }
 
 /// Whether a giant that is strained so stays as it is, so that nothing is to be written.
