@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "client/centre.h"
 #include "client/dice.h"
 
 namespace huestep::client {
@@ -14,12 +15,6 @@ class IdleBot : public Bot {
  public:
     std::vector<Action> act(const Situation&) override { return {}; }
 };
-
-std::optional<Vec2> centreOf(const World& world, BodyId body) {
-    const std::optional<std::uint32_t> place = world.find(body);
-    if (!place) return std::nullopt;
-    return world.motions()[*place].position;
-}
 
 /// Bodies the player spawned, its own body aside, oldest first.
 std::vector<BodyId> spawnedBy(const Situation& now) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/bot.h"
+#include "client/centre.h"
 #include "client/dice.h"
 #include "core/games/ball.h"
 #include "core/games/building.h"
@@ -12,12 +13,6 @@
 namespace huestep::client {
 
 namespace {
-
-std::optional<Vec2> centreOf(const World& world, BodyId body) {
-    const std::optional<std::uint32_t> place = world.find(body);
-    if (!place) return std::nullopt;
-    return world.motions()[*place].position;
-}
 
 class GameBot : public Bot {
  public:
@@ -46,12 +41,12 @@ class GameBot : public Bot {
         const float side = state.team[place] == 0 ? 1.0f : -1.0f;
         const Vec2 goal =
             transform(now.world.motions()[*pitch].pose(), Vec2{side * state.halfLength, 0.0f});
-        const Vec2 aim = directionOf(goal - *ball);
+        const Vec2 aim = normalized(goal - *ball);
         const Vec2 to = *ball - 0.9f * aim - *own;
         // Not every tick: a person would not either, and those who run alike would stick together.
         if (!m_dice.once(4)) {
             const float mass = now.world.bodies()[*now.world.find(now.body)].mass;
-            const Vec2 push = (0.4f * mass) * directionOf(to);
+            const Vec2 push = (0.4f * mass) * normalized(to);
             out.push_back(ApplyImpulse{now.body, push, *own});
         }
         const bool near = length(*ball - *own) < 1.3f;
@@ -74,11 +69,6 @@ class GameBot : public Bot {
         piece.vector = *own + Vec2{m_dice.between(-3.0f, 3.0f), m_dice.between(1.0f, 3.0f)};
         out.push_back(piece);
         return out;
-    }
-
-    static Vec2 directionOf(Vec2 way) {
-        const float far = length(way);
-        return far > 0.0f ? (1.0f / far) * way : Vec2{};
     }
 
     Dice m_dice;

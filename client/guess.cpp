@@ -3,15 +3,11 @@
 #include <optional>
 #include <utility>
 
+#include "client/centre.h"
+
 namespace huestep::client {
 
 namespace {
-
-std::optional<Vec2> centreOf(const World& world, BodyId body) {
-    const std::optional<std::uint32_t> place = world.find(body);
-    if (!place) return std::nullopt;
-    return world.motions()[*place].position;
-}
 
 /// The same push at where its body is now; none: it was none, or the body is gone.
 std::optional<Action> again(const World& world, const Action& action) {

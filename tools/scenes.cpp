@@ -9,15 +9,16 @@
 namespace huestep::tools {
 namespace {
 
-std::size_t bodiesOf(const CatalogEntry& entry) {
-    const Result<Scene> scene = sceneFromCatalog(entry.name);
-    return scene ? scene->bodies.size() : 0;
-}
+/// What has to be built to be known.
+struct Built {
+    std::size_t bodies = 0;
+    std::string rules;  ///< by which it is played; empty: none
+};
 
-/// Those that the scene is played by; empty: none.
-std::string rulesOf(const CatalogEntry& entry) {
+Built built(const CatalogEntry& entry) {
     const Result<Scene> scene = sceneFromCatalog(entry.name);
-    return scene && scene->rules ? scene->rules->name : std::string();
+    if (!scene) return {};
+    return {scene->bodies.size(), scene->rules ? scene->rules->name : std::string()};
 }
 
 Json asJson(std::span<const SceneParameter> parameters) {
@@ -32,12 +33,13 @@ Json asJson(std::span<const SceneParameter> parameters) {
 }
 
 Json asJson(const CatalogEntry& entry) {
+    const Built scene = built(entry);
     return {{"name", entry.name},
             {"purpose", entry.purpose},
-            {"bodies", bodiesOf(entry)},
+            {"bodies", scene.bodies},
             {"ticks", entry.ticks},
             {"scripted", entry.script != nullptr},
-            {"rules", rulesOf(entry)},
+            {"rules", scene.rules},
             {"parameters", asJson(std::span(entry.parameters))}};
 }
 
@@ -56,9 +58,10 @@ Answer showScenes(bool json) {
                             number(p.high), std::string(p.meaning)});
     };
     for (const CatalogEntry& entry : sceneCatalog()) {
-        table.add(
-            {std::string(entry.name), std::to_string(bodiesOf(entry)), std::to_string(entry.ticks),
-             entry.script != nullptr ? "scripted" : rulesOf(entry), std::string(entry.purpose)});
+        const Built scene = built(entry);
+        table.add({std::string(entry.name), std::to_string(scene.bodies),
+                   std::to_string(entry.ticks), entry.script != nullptr ? "scripted" : scene.rules,
+                   std::string(entry.purpose)});
         addParameters(std::string(entry.name), entry.parameters);
     }
     addParameters("every scene", commonParameters());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/games/seats.h"
+
 namespace huestep::games {
 
 namespace {
@@ -13,12 +15,6 @@ constexpr float kickSpeed = 14.0f;    // m/s that the hardest kick gives the bal
 constexpr float restSeconds = 0.4f;   // between two kicks of a player
 constexpr float overSeconds = 10.0f;  // from the end of a game to the next
 constexpr float maxSeconds = 3600.0f;
-
-std::optional<std::size_t> seatOf(const BallState& s, PlayerId player) {
-    const auto at = std::find(s.player.begin(), s.player.end(), player);
-    if (player == 0 || at == s.player.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - s.player.begin());
-}
 
 Pose pitchOf(const BallState& s, const Seen& seen) {
     const BodyMotion* const pitch = seen.motionOf(s.pitch);
@@ -32,13 +28,6 @@ bool inPlay(const BallState& s) {
 void enter(BallState& s, BallPhase phase, std::uint32_t ticks) {
     s.phase = static_cast<std::uint32_t>(phase);
     s.phaseLeft = ticks;
-}
-
-const PlayerRecord* recordOf(const Seen& seen, PlayerId player) {
-    for (const PlayerRecord& record : seen.players()) {
-        if (record.id == player) return &record;
-    }
-    return nullptr;
 }
 
 /// The farthest that a round body reaches, m; 0 for none.
@@ -67,11 +56,11 @@ void putOnSpot(BallState& s, std::size_t seat, Game& game) {
 
 void lookWhoIsThere(BallState& s, Game& game) {
     for (std::size_t i = 0; i < ballSeats; ++i) {
-        if (s.player[i] == 0 || recordOf(game, s.player[i]) != nullptr) continue;
+        if (s.player[i] == 0 || game.player(s.player[i]) != nullptr) continue;
         s.player[i] = s.team[i] = s.pushed[i] = s.rest[i] = s.scored[i] = 0;
     }
     for (const PlayerRecord& record : game.players()) {
-        if (record.id == 0 || seatOf(s, record.id)) continue;
+        if (record.id == 0 || seatOf(s.player, record.id)) continue;
         const auto free = std::find(s.player.begin(), s.player.end(), 0u);
         if (free == s.player.end()) return;  // full: it may look on
         std::array<std::uint32_t, 2> strength{};
@@ -116,7 +105,7 @@ void beginGame(BallState& s) {
 }
 
 Rejection kickBall(BallState& s, Game& game, std::size_t seat, Vec2 direction) {
-    const PlayerRecord* const player = recordOf(game, s.player[seat]);
+    const PlayerRecord* const player = game.player(s.player[seat]);
     const BodyMotion* const own = game.motionOf(player->body);
     const BodyMotion* const ball = game.motionOf(s.ball);
     if (own == nullptr || ball == nullptr) return Rejection::UnknownBody;
@@ -154,7 +143,7 @@ Status Ball::begin(BallState& s, RulesParameters& parameters, const Seen& seen) 
 }
 
 Rejection Ball::onCommand(BallState& s, Game& game, const Command& command) const {
-    const std::optional<std::size_t> seat = seatOf(s, command.author);
+    const std::optional<std::size_t> seat = seatOf(s.player, command.author);
     const auto* const custom = std::get_if<Custom>(&command.action);
     if (custom != nullptr && custom->kind != kick) return Rejection::UnknownAction;
     const auto* const push = std::get_if<ApplyImpulse>(&command.action);
@@ -162,7 +151,7 @@ Rejection Ball::onCommand(BallState& s, Game& game, const Command& command) cons
         return Rejection::AgainstRules;
     }
     if (custom != nullptr) return kickBall(s, game, *seat, custom->vector);
-    const PlayerRecord* const player = recordOf(game, command.author);
+    const PlayerRecord* const player = game.player(command.author);
     if (push->body != player->body || s.pushed[*seat] != 0) return Rejection::AgainstRules;
     s.pushed[*seat] = 1;
     return Rejection::None;
@@ -185,7 +174,7 @@ void Ball::afterStep(BallState& s, const Seen& seen) const {
         if (a != s.ball && b != s.ball) continue;
         const BodyId other = a == s.ball ? b : a;
         for (const PlayerRecord& player : seen.players()) {
-            if (player.body == other && seatOf(s, player.id)) s.lastTouch = player.id;
+            if (player.body == other && seatOf(s.player, player.id)) s.lastTouch = player.id;
         }
     }
     if (!inPlay(s)) return;
@@ -196,7 +185,7 @@ void Ball::afterStep(BallState& s, const Seen& seen) const {
         if (between && (at.x > s.halfLength || at.x < -s.halfLength)) {
             const std::uint32_t team = at.x > 0.0f ? 0 : 1;  // the one that plays towards there
             ++s.goals[team];
-            const auto seat = seatOf(s, s.lastTouch);
+            const auto seat = seatOf(s.player, s.lastTouch);
             if (seat && s.team[*seat] == team) ++s.scored[*seat];
             s.kickOff = 1;
             enter(s, BallPhase::Pause, s.pauseTicks);

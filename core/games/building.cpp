@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/games/seats.h"
+
 #include "core/math/trig.h"
 
 namespace huestep::games {
@@ -36,19 +38,6 @@ struct Builder {
     }
 };
 
-std::optional<std::size_t> seatOf(const BuildingState& s, PlayerId player) {
-    const auto at = std::find(s.player.begin(), s.player.end(), player);
-    if (player == 0 || at == s.player.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - s.player.begin());
-}
-
-const PlayerRecord* recordOf(const Seen& seen, PlayerId player) {
-    for (const PlayerRecord& record : seen.players()) {
-        if (record.id == player) return &record;
-    }
-    return nullptr;
-}
-
 /// A polygon around a circle of radius `half`, with 3 to 8 corners.
 ShapeDef polygonOf(std::uint32_t corners, float half) {
     std::array<Vec2, maxPolygonVertices> points{};
@@ -77,11 +66,11 @@ BodyDef pieceOf(const Custom& wish, Game& game) {
 }
 
 Rejection put(BuildingState& s, Game& game, PlayerId player, const Custom& wish) {
-    const std::optional<std::size_t> seat = seatOf(s, player);
+    const std::optional<std::size_t> seat = seatOf(s.player, player);
     if (!seat || s.rest[*seat] != 0) return Rejection::AgainstRules;
     const bool sized = wish.number >= leastSize && wish.number <= mostSize;
     if (wish.number != 0 && !sized) return Rejection::BadDefinition;
-    const PlayerRecord* const record = recordOf(game, player);
+    const PlayerRecord* const record = game.player(player);
     if (record == nullptr) return Rejection::AgainstRules;  // it left in this tick
     if (const BodyMotion* const own = game.motionOf(record->body)) {
         if (!(length(wish.vector - own->position) <= buildReach)) return Rejection::TooFar;
@@ -120,7 +109,7 @@ Rejection Building::onCommand(BuildingState& s, Game& game, const Command& comma
 void Building::beforeStep(BuildingState& s, Game& game) const {
     for (std::size_t seat = 0; seat < builders; ++seat) {
         Builder builder{s, seat};
-        if (s.player[seat] != 0 && recordOf(game, s.player[seat]) == nullptr) builder.leave();
+        if (s.player[seat] != 0 && game.player(s.player[seat]) == nullptr) builder.leave();
         s.rest[seat] -= s.rest[seat] > 0;
         for (std::size_t i = 0; i < builder.count();) {
             const bool there = game.find(builder.body(i)).has_value();
@@ -134,7 +123,7 @@ void Building::beforeStep(BuildingState& s, Game& game) const {
         }
     }
     for (const PlayerRecord& record : game.players()) {
-        if (record.id == 0 || seatOf(s, record.id)) continue;
+        if (record.id == 0 || seatOf(s.player, record.id)) continue;
         const auto free = std::find(s.player.begin(), s.player.end(), 0u);
         if (free == s.player.end()) return;  // full: it may push what others build
         *free = record.id;

@@ -27,6 +27,7 @@ class Seen {
 
     /// The host first, who is no player; then the players by id.
     [[nodiscard]] std::span<const PlayerRecord> players() const;
+    [[nodiscard]] const PlayerRecord* player(PlayerId id) const;  ///< null: there is none
     /// Those removed in this tick are still there; `find` and `motionOf` know them no more.
     [[nodiscard]] std::span<const BodyInfo> bodies() const;
     [[nodiscard]] std::span<const BodyMotion> motions() const;  ///< place i: body i

@@ -1,6 +1,7 @@
 // Looking into a world, and the small changes every stage shares.
 
 #include <algorithm>
+#include <utility>
 
 #include "core/state/delta.h"
 #include "core/state/snapshot.h"
@@ -21,9 +22,12 @@ std::optional<std::uint32_t> World::Data::findJoint(JointId id) const {
     return at;
 }
 
-PlayerRecord* World::Data::findPlayer(PlayerId id) {
+const PlayerRecord* World::Data::findPlayer(PlayerId id) const {
     const auto at = placeById(state.players, id);
     return at ? &state.players[*at] : nullptr;
+}
+PlayerRecord* World::Data::findPlayer(PlayerId id) {
+    return const_cast<PlayerRecord*>(std::as_const(*this).findPlayer(id));
 }
 
 std::span<const ShapeInfo> World::Data::shapesOf(BodyId id) const {

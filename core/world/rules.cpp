@@ -128,6 +128,9 @@ std::uint32_t Seen::ticksOf(float seconds) const {
 std::span<const PlayerRecord> Seen::players() const {
     return m_world.state.players;
 }
+const PlayerRecord* Seen::player(PlayerId id) const {
+    return m_world.findPlayer(id);
+}
 std::span<const BodyInfo> Seen::bodies() const {
     return m_world.state.bodies;
 }

@@ -173,6 +173,7 @@ struct World::Data : Carried {
     [[nodiscard]] std::optional<std::uint32_t> findBody(BodyId id) const;
     [[nodiscard]] std::optional<std::uint32_t> findJoint(JointId id) const;
     [[nodiscard]] PlayerRecord* findPlayer(PlayerId id);
+    [[nodiscard]] const PlayerRecord* findPlayer(PlayerId id) const;
     [[nodiscard]] std::span<const ShapeInfo> shapesOf(BodyId id) const;
     void wake(std::uint32_t body);
     void contactsToState() const;
